@@ -20,7 +20,7 @@ def nearest_facet_distances(points: FloatArray, corners: FloatArray) -> FloatArr
     return distances
 
 
-@njit(cache=True, nogil=True)
+@njit(nogil=True)
 def _least_squares(points, facets, count):
     least = np.full(count, np.inf)
     for vertex in range(count):

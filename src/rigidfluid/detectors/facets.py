@@ -315,7 +315,7 @@ def _piercing_edges(a: _Facets, b: _Facets) -> Touches:
     if np.any(inside.max(axis=0) < lower) or np.any(inside.min(axis=0) > upper):
         return _no_touches(len(lower))
     points, edges = np.concatenate([facets.points, inside]), a.solid.features.all_edges + len(facets.points)
-    met = crossings(points, edges, facets.vertices, b.solid.surface.tree)
+    met = crossings(points, edges, b.solid.surface.tree)
     normal = b.solid.surface.facet_normals[met[:, 1]]
     ends = points[edges[met[:, 0]]]
     heights = np.einsum("mej,mj->me", ends - points[facets.vertices[met[:, 1], :1]], normal)

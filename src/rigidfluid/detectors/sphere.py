@@ -60,13 +60,12 @@ class SphereDetector(Detector):
 
     def _flat_contacts(self, position: FloatArray, reach: float) -> Contacts:
         """Contacts of balls with balls and flat walls."""
-        from rigidfluid.detectors.sphere_contacts import near_surfaces, points_and_normals
+        from rigidfluid.detectors.sphere_contacts import Balls, FlatWalls, near_surfaces, points_and_normals
 
-        radii = self._radii
-        pairs = self._pairs.within(position, reach)
-        planes = self._planes.reshape(-1, 2, position.shape[1])
-        a, b, gap = near_surfaces(position, radii, pairs.start, pairs.second, planes, self._surfaces, reach)
-        point_a, point_b, normal = points_and_normals(position, radii, planes, self._surfaces, a, b)
+        radii, pairs = self._radii, self._pairs.within(position, reach)
+        balls, walls = Balls(position, radii), FlatWalls(self._planes.reshape(-1, 2, position.shape[1]), self._surfaces)
+        a, b, gap = near_surfaces(balls, (pairs.start, pairs.second), walls, reach)
+        point_a, point_b, normal = points_and_normals(balls, walls, a, b)
         # behind the bodies' radii that of any flat wall
         all_radii = np.append(radii, np.inf)
         return Contacts(

@@ -5,8 +5,27 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
+
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+
+
+class Balls(NamedTuple):
+    """Balls by ``position`` (n, d) and ``radii`` (n,) [length]."""
+
+    position: FloatArray
+    radii: FloatArray
+
+
+class FlatWalls(NamedTuple):
+    """Flat walls: ``planes`` (w, 2, d) are a point and the unit normal of each, ``surfaces`` (w,) their rising
+    numbers."""
+
+    planes: FloatArray
+    surfaces: IntArray
 
 
 @njit(cache=True, nogil=True)
@@ -20,12 +39,12 @@ def _square(position, a, b):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def near_surfaces(position, radii, start, second, planes, surfaces, reach):
+def near_surfaces(balls, pairs, walls, reach):
     """Balls a, surfaces b near them and gaps ≤ ``reach`` [length], (m,) each, sorted by (a, b).
 
-    Ball a is paired with the balls ``second[start[a]:start[a + 1]]``, of higher numbers. ``planes`` (w, 2, d) are a
-    point and the unit normal of each wall, ``surfaces`` (w,) their rising numbers.
+    The ``pairs``, a start and the second balls, are ball a with ``second[start[a]:start[a + 1]]``, of higher numbers.
     """
+    (position, radii), (start, second), (planes, surfaces) = balls, pairs, walls
     count, dimension = position.shape
     most = len(second) + count * len(planes)
     body, other, gap = np.empty(most, np.int64), np.empty(most, np.int64), np.empty(most)
@@ -52,12 +71,13 @@ def near_surfaces(position, radii, start, second, planes, surfaces, reach):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def points_and_normals(position, radii, planes, surfaces, body, other):
+def points_and_normals(balls, walls, body, other):
     """Nearest points of a and of b [length], and normals, (m, d) each, of the balls a and surfaces b of
     `near_surfaces`.
 
     The normal of balls with a common centre is the first axis.
     """
+    (position, radii), (planes, surfaces) = balls, walls
     dimension = position.shape[1]
     point_a, point_b = np.empty((len(body), dimension)), np.empty((len(body), dimension))
     normal = np.empty((len(body), dimension))

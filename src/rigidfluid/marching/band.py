@@ -12,11 +12,11 @@ from numba import njit
 
 
 @njit(cache=True, nogil=True)
-def in_band(points, neighbours, vertex, distance, width, slack):
-    """Whether D ≤ ``width`` + ``slack`` L for a vertex at ``distance`` D, L its longest edge."""
-    if distance <= width or slack == 0.0:
-        return distance <= width
-    short = (distance - width) / slack
+def in_band(points, neighbours, vertex, distance, band):
+    """Whether a vertex at ``distance`` D is in a `field.Band`."""
+    if distance <= band.width or band.slack == 0.0:
+        return distance <= band.width
+    short = (distance - band.width) / band.slack
     if len(neighbours.elsewhere) > 0 and neighbours.elsewhere[vertex] >= short * short:
         return True
     for k in range(neighbours.start[vertex], neighbours.start[vertex + 1]):
@@ -36,9 +36,11 @@ def longest_edges(points, neighbours, vertices):
 
 
 @njit(cache=True, nogil=True, forceinline=True)
-def square_in_band(points, neighbours, vertex, square, width, slack):
+def square_in_band(points, neighbours, vertex, square, band):
     """`in_band` from the squared distance, which mostly needs no root."""
-    return square <= width * width or (slack > 0.0 and in_band(points, neighbours, vertex, sqrt(square), width, slack))
+    if square <= band.width * band.width:
+        return True
+    return band.slack > 0.0 and in_band(points, neighbours, vertex, sqrt(square), band)
 
 
 @njit(cache=True, nogil=True, forceinline=True)

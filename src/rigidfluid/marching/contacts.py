@@ -12,7 +12,6 @@ import numpy as np
 
 from rigidfluid.core.contact.broad_phase import near_pairs, near_walls
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.geometry.facet_tree import Tree
 from rigidfluid.core.geometry.wall import Wall, radius_of, wall_radii
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
@@ -22,7 +21,7 @@ from rigidfluid.marching.field import WAVES, Accuracy, Band
 from rigidfluid.marching.options import MarchingOptions
 from rigidfluid.marching.pairs import any_near, facet_gaps, nearest_points, places
 from rigidfluid.marching.shared import NO_GAPS, Gaps, SharedMesh, joined_gaps
-from rigidfluid.marching.topology import Numbers, Topology
+from rigidfluid.marching.topology import Numbers, Target, Topology
 from rigidfluid.marching.workers import Workers, same_topology
 from rigidfluid.marching.workspace import Workspace
 
@@ -42,12 +41,12 @@ class _Scope(NamedTuple):
     reach: float
 
 
-class _Field(NamedTuple):
-    """Field marched from a ``body``: it is in ``work``, with the ``tree`` of the body's facets."""
+class Field(NamedTuple):
+    """Field marched from a ``body``, the ``target`` of its distances, which are in ``work``."""
 
     body: int
+    target: Target
     work: Workspace
-    tree: Tree
 
 
 _Near = tuple[int, list[int]]
@@ -117,7 +116,7 @@ class ContactFinder:
         for (body, others), march in zip(near, marches, strict=True):
             if march is not None:
                 put_back(work, *march[:4])
-                field = _Field(body, work, march.tree)
+                field = Field(body, march.target, work)
                 gaps += [self._surface_gaps(scope, field, other, shared.facets_of(other)) for other in others]
                 reset(work, len(march.vertices), len(march.beyond))
         return scope, shared.gather(joined_gaps(gaps))
@@ -153,19 +152,15 @@ class ContactFinder:
         topology, points = scope.topology, scope.points
         wave = WAVES[self._accuracy](topology, points, [body], self._band(scope), work)
         if self._accuracy != "exact":
-            measure(points, topology.surfaces, topology.seeds([body]).wanted, wave.tree, work, wave.touched)
-        field = _Field(body, work, wave.tree)
+            measure(wave.target, work, wave.touched)
+        field = Field(body, wave.target, work)
         gaps = [self._surface_gaps(scope, field, other, topology.facets_of(other)) for other in others]
         reset(work, wave.touched, wave.beyond)
         return gaps
 
-    def _surface_gaps(self, scope: _Scope, field: _Field, other: int, chosen: Numbers) -> Gaps:
+    def _surface_gaps(self, scope: _Scope, field: Field, other: int, chosen: Numbers) -> Gaps:
         """Gaps of the facets ``chosen`` of the other surface to the body of a field."""
-        topology, points, reach, several = scope.topology, scope.points, scope.reach, self._several
-        ball, wanted = self._ball(scope, field.body), topology.seeds([field.body]).wanted
-        gap, partner = np.empty(len(chosen)), np.empty(len(chosen), np.int32)
-        surfaces, work = topology.surfaces, field.work
-        facet_gaps(points, surfaces, wanted, field.tree, *ball, chosen, reach, several, work, gap, partner)
+        gap, partner = facet_gaps(field, self._ball(scope, field.body), chosen, scope.reach, self._several)
         near = np.flatnonzero(np.isfinite(gap))
         pair = np.full(len(near), field.body * self._surfaces + other)
         return Gaps(pair, chosen[near], gap[near], partner[near])

@@ -12,35 +12,45 @@ The trees of facets are those of `rigidfluid.core.geometry.facet_tree`.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from numba import njit
 
 from rigidfluid.core.geometry.facet_tree import build_tree, empty_tree, search_to_vertex
 from rigidfluid.marching.band import square_in_band
 from rigidfluid.marching.convex import is_convex
+from rigidfluid.marching.topology import Target
 from rigidfluid.marching.walk import local_search_to_vertex
 from rigidfluid.marching.workspace import BEYOND, FAR, KNOWN
 
 
-@njit(cache=True, nogil=True)
-def seed(points, surfaces, seeds, whole, work):
-    """Give the vertices of the facets ``seeds`` distance zero; return their number, and the tree if one is needed.
+class Front(NamedTuple):
+    """How far a march has come: it goes on from ``work.touched[first:touched]``, and has found so many ``beyond``."""
 
-    ``whole`` says whether the facets are a closed surface in one piece.
-    """
+    first: int
+    touched: int
+    beyond: int
+
+
+@njit(cache=True, nogil=True)
+def seed(points, surfaces, seeds, work):
+    """Give the vertices of the ``seeds``' facets distance zero; return their number and the target, with a tree if one
+    is needed."""
     touched = 0
-    for facet in seeds:
+    for facet in seeds.facets:
         for vertex in surfaces.facets[facet]:
             if work.state[vertex] == FAR:
                 work.state[vertex], work.key[vertex], work.facet[vertex] = KNOWN, 0.0, facet
                 work.touched[touched] = vertex
                 touched += 1
-    convex = whole and is_convex(points, surfaces, seeds)
-    return touched, empty_tree(points.shape[1]) if convex else build_tree(points, surfaces.facets, seeds)
+    convex = seeds.whole and is_convex(points, surfaces, seeds.facets)
+    tree = empty_tree(surfaces.facets) if convex else build_tree(points, surfaces.facets, seeds.facets)
+    return touched, Target(points, surfaces, seeds.wanted, tree)
 
 
 @njit(cache=True, nogil=True)
-def march(points, neighbours, surfaces, wanted, tree, width, slack, work, first, touched, beyond):
-    """Spread the nearest facet from ``work.touched[first:touched]``; return numbers of vertices touched and beyond.
+def march(neighbours, target, band, work, front):
+    """Spread the nearest facet from a `Front`; return numbers of vertices touched and beyond.
 
     Vertices outside the band are marked BEYOND, so that each is measured once, and listed at the end of
     ``work.touched``.
@@ -48,6 +58,8 @@ def march(points, neighbours, surfaces, wanted, tree, width, slack, work, first,
     # names of their own spare the counting of references at each use
     state, key, nearest_facet, queue = work.state, work.key, work.facet, work.touched
     start, members = neighbours.start, neighbours.members
+    points, surfaces, wanted, tree = target
+    first, touched, beyond = front
     while first < touched:
         vertex = queue[first]
         facet = nearest_facet[vertex]
@@ -57,8 +69,8 @@ def march(points, neighbours, surfaces, wanted, tree, width, slack, work, first,
             if state[other] != FAR:
                 continue
             square, nearest = local_search_to_vertex(points, other, surfaces, wanted, facet)
-            square, nearest = search_to_vertex(points, other, surfaces.facets, tree, square, nearest)
-            if square_in_band(points, neighbours, other, square, width, slack):
+            square, nearest = search_to_vertex(points, other, tree, square, nearest)
+            if square_in_band(points, neighbours, other, square, band):
                 state[other], key[other], nearest_facet[other] = KNOWN, square, nearest
                 queue[touched] = other
                 touched += 1
@@ -82,11 +94,12 @@ def accept(vertices, key, facet, work, touched):
 
 
 @njit(cache=True, nogil=True)
-def measure(points, surfaces, wanted, tree, work, touched):
+def measure(target, work, touched):
     """Put the exact squared distance in place of any other key that the touched vertices have."""
+    points, surfaces, wanted, tree = target
     for vertex in work.touched[:touched]:
         square, facet = local_search_to_vertex(points, vertex, surfaces, wanted, work.facet[vertex])
-        square, facet = search_to_vertex(points, vertex, surfaces.facets, tree, square, facet)
+        square, facet = search_to_vertex(points, vertex, tree, square, facet)
         work.key[vertex], work.facet[vertex] = square, facet
 
 
@@ -97,16 +110,6 @@ def reset(work, touched, beyond):
         work.state[work.touched[k]] = FAR
     for k in range(1, beyond + 1):
         work.state[work.touched[-k]] = FAR
-
-
-@njit(cache=True, nogil=True)
-def march_on(
-    points, neighbours, surfaces, wanted, tree, width, slack, work, first, touched, beyond, vertices, key, facet
-):
-    """Take in the ``vertices`` that others have reached, `march` and `put_aside`; return also the march's start."""
-    taken = accept(vertices, key, facet, work, touched)
-    touched, beyond = march(points, neighbours, surfaces, wanted, tree, width, slack, work, first, taken, beyond)
-    return taken, put_aside(work, touched, beyond)
 
 
 @njit(cache=True, nogil=True)

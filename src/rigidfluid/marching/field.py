@@ -9,10 +9,9 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.geometry.facet_tree import Tree
-from rigidfluid.marching.exact import march, reset, seed
+from rigidfluid.marching.exact import Front, march, reset, seed
 from rigidfluid.marching.first_order import march_first_order
-from rigidfluid.marching.topology import Numbers, Topology
+from rigidfluid.marching.topology import Numbers, Target, Topology
 from rigidfluid.marching.workspace import Workspace, new_workspace
 
 Accuracy = Literal["exact", "first-order"]
@@ -26,11 +25,11 @@ class Band(NamedTuple):
 
 
 class Wave(NamedTuple):
-    """Numbers of vertices that a march lists as ``touched`` and as ``beyond``, and the ``tree`` of its facets."""
+    """Numbers of vertices that a march lists as ``touched`` and as ``beyond``, and its ``target``."""
 
     touched: int
     beyond: int
-    tree: Tree
+    target: Target
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,20 +86,16 @@ def distance_field(
 
 def exact_wave(topology: Topology, points: FloatArray, surfaces: Iterable[int], band: Band, work: Workspace) -> Wave:
     """March from facet to facet and leave the field, of squares, in ``work``, to be reset by the caller."""
-    seeds = topology.seeds(surfaces)
-    size, tree = seed(points, topology.surfaces, seeds.facets, seeds.whole, work)
-    surface = topology.surfaces, seeds.wanted, tree
-    touched, beyond = march(points, topology.neighbours, *surface, *band, work, 0, size, 0)
-    return Wave(touched, beyond, tree)
+    size, target = seed(points, topology.surfaces, topology.seeds(surfaces), work)
+    touched, beyond = march(topology.adjacency.neighbours, target, band, work, Front(0, size, 0))
+    return Wave(touched, beyond, target)
 
 
 def planar_wave(topology: Topology, points: FloatArray, surfaces: Iterable[int], band: Band, work: Workspace) -> Wave:
     """The same to first order, by the paper's planar waves, which leave distances."""
-    seeds = topology.seeds(surfaces)
-    size, tree = seed(points, topology.surfaces, seeds.facets, seeds.whole, work)
-    cells = topology.cells, topology.cell_rows
-    touched = march_first_order(points, *cells, topology.neighbours, *band, work, size)
-    return Wave(touched, 0, tree)
+    size, target = seed(points, topology.surfaces, topology.seeds(surfaces), work)
+    touched = march_first_order(points, topology.adjacency, band, work, size)
+    return Wave(touched, 0, target)
 
 
 WAVES = {"exact": exact_wave, "first-order": planar_wave}

@@ -24,16 +24,17 @@ FLAT = 1e-12
 
 
 @njit(cache=True, nogil=True)
-def march_first_order(points, cells, cell_rows, neighbours, width, slack, work, touched):
+def march_first_order(points, adjacency, band, work, touched):
     """Spread the distance from the first ``touched`` vertices of ``work.touched``; how many there are then.
 
     Each vertex also gets the facet of the corner that its wave comes from. Vertices outside the band are left FAR.
     """
+    cells, cell_rows, neighbours = adjacency
     size = 0
     for k in range(touched):
-        size = push(work.heap, work.heap_key, work.place, size, work.touched[k], work.key[work.touched[k]])
+        size = push(work.heap, size, work.touched[k], work.key[work.touched[k]])
     while size > 0:
-        vertex = pop(work.heap, work.heap_key, work.place, size)
+        vertex = pop(work.heap, size)
         size -= 1
         work.state[vertex] = KNOWN
         for k in range(cell_rows.start[vertex], cell_rows.start[vertex + 1]):
@@ -45,16 +46,16 @@ def march_first_order(points, cells, cell_rows, neighbours, width, slack, work, 
                 value = _update(points, cell, other, vertex, work)
                 if state == TRIAL and value >= work.key[other]:
                     continue
-                if not in_band(points, neighbours, other, value, width, slack):
+                if not in_band(points, neighbours, other, value, band):
                     continue
                 work.key[other], work.facet[other] = value, work.facet[vertex]
                 if state == TRIAL:
-                    lower(work.heap, work.heap_key, work.place, other, value)
+                    lower(work.heap, other, value)
                     continue
                 work.touched[touched] = other
                 touched += 1
                 work.state[other] = TRIAL
-                size = push(work.heap, work.heap_key, work.place, size, other, value)
+                size = push(work.heap, size, other, value)
     return touched
 
 

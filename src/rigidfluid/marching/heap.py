@@ -1,60 +1,70 @@
-"""A binary heap of vertices, smallest key on top, in which a vertex's key can fall. Arrays in, new size out.
-
-``heap`` holds vertices, ``heap_key`` their keys beside them, ``place`` (N,) where in the heap each vertex is.
-"""
+"""A binary heap of vertices, smallest key on top, in which a vertex's key can fall. Arrays in, new size out."""
 
 # numba compiles for the types that come; annotations would be a second, unchecked signature.
 # mypy: disallow-untyped-defs=False
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+import numpy as np
 from numba import njit
+from numpy.typing import NDArray
+
+from rigidfluid.core.geometry.arrays import FloatArray
+
+
+class Heap(NamedTuple):
+    """``vertices`` in the heap, their ``keys`` beside them, and the ``place`` (N,) in the heap of each vertex."""
+
+    vertices: NDArray[np.int32]
+    keys: FloatArray
+    place: NDArray[np.int32]
 
 
 @njit(cache=True, nogil=True)
-def push(heap, heap_key, place, size, vertex, key):
+def push(heap, size, vertex, key):
     """Add a vertex; the new size."""
-    place[vertex] = size
-    heap[size] = vertex
-    lower(heap, heap_key, place, vertex, key)
+    heap.place[vertex] = size
+    heap.vertices[size] = vertex
+    lower(heap, vertex, key)
     return size + 1
 
 
 @njit(cache=True, nogil=True)
-def lower(heap, heap_key, place, vertex, key):
+def lower(heap, vertex, key):
     """Give a vertex in the heap a smaller key."""
-    at = place[vertex]
+    at = heap.place[vertex]
     while at > 0:
         parent = (at - 1) >> 1
-        if heap_key[parent] <= key:
+        if heap.keys[parent] <= key:
             break
-        _put(heap, heap_key, place, at, heap[parent], heap_key[parent])
+        _put(heap, at, heap.vertices[parent], heap.keys[parent])
         at = parent
-    _put(heap, heap_key, place, at, vertex, key)
+    _put(heap, at, vertex, key)
 
 
 @njit(cache=True, nogil=True)
-def pop(heap, heap_key, place, size):
+def pop(heap, size):
     """Take out the vertex on top; that vertex. The size falls by one."""
-    top = heap[0]
+    top = heap.vertices[0]
     last = size - 1
-    vertex, key = heap[last], heap_key[last]
+    vertex, key = heap.vertices[last], heap.keys[last]
     at = 0
     while True:
         child = 2 * at + 1
         if child >= last:
             break
-        if child + 1 < last and heap_key[child + 1] < heap_key[child]:
+        if child + 1 < last and heap.keys[child + 1] < heap.keys[child]:
             child += 1
-        if heap_key[child] >= key:
+        if heap.keys[child] >= key:
             break
-        _put(heap, heap_key, place, at, heap[child], heap_key[child])
+        _put(heap, at, heap.vertices[child], heap.keys[child])
         at = child
-    _put(heap, heap_key, place, at, vertex, key)
+    _put(heap, at, vertex, key)
     return top
 
 
 @njit(cache=True, nogil=True)
-def _put(heap, heap_key, place, at, vertex, key):
-    heap[at], heap_key[at] = vertex, key
-    place[vertex] = at
+def _put(heap, at, vertex, key):
+    heap.vertices[at], heap.keys[at], heap.place[vertex] = vertex, key, at

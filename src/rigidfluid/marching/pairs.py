@@ -29,21 +29,23 @@ def any_near(points, facets, chosen, centre, radius):
 
 
 @njit(cache=True, nogil=True)
-def facet_gaps(points, surfaces, wanted, tree, centre, radius, chosen, reach, all_places, work, gap, partner):
-    """Distance of each facet of ``chosen`` to the surfaces ``wanted``, inside a ball, whose field is in ``work``.
+def facet_gaps(field, ball, chosen, reach, all_places):
+    """Distance of each facet of ``chosen`` to the target of a field, inside a ``ball``, its centre and radius.
 
-    ``gap`` (c,) is infinite where it is above ``reach`` (or, unless ``all_places``, above that of another facet), and
-    ``partner`` (c,) the facet where it is reached. A facet with no corner in the band is left out; so is one that
+    The gap (c,) is infinite where it is above ``reach`` (or, unless ``all_places``, above that of another facet), and
+    the partner (c,) the facet where it is reached. A facet with no corner in the band is left out; so is one that
     its distance to the ball, or its corners' distances less its edges, show to be too far.
     """
+    (points, surfaces, _, _), (centre, radius) = field.target, ball
+    bound = gap = np.empty(len(chosen))
+    partner = np.empty(len(chosen), np.int32)
     if len(chosen) == 0:
-        return
-    bound = gap
+        return gap, partner
     first, nearest_corner = 0, np.inf
     for row in range(len(chosen)):
         bound[row] = sqrt(_box_to_point(points, surfaces.facets[chosen[row]], centre)) - radius
         if bound[row] <= reach:
-            by_corners, corner_gap = _bounds(points, surfaces.facets[chosen[row]], work)
+            by_corners, corner_gap = _bounds(points, surfaces.facets[chosen[row]], field.work)
             bound[row] = max(bound[row], by_corners)
             if corner_gap < nearest_corner:
                 first, nearest_corner = row, corner_gap
@@ -54,11 +56,12 @@ def facet_gaps(points, surfaces, wanted, tree, centre, radius, chosen, reach, al
         if bound[row] > limit:
             gap[row] = np.inf
         elif k != first:
-            gap[row], partner[row] = _facet_gap(points, surfaces, wanted, tree, chosen[row], work)
+            gap[row], partner[row] = _facet_gap(field, chosen[row])
             if gap[row] > limit:
                 gap[row] = np.inf
             elif not all_places:
                 limit = gap[row]
+    return gap, partner
 
 
 @njit(cache=True, nogil=True)
@@ -78,14 +81,15 @@ def _bounds(points, corners, work):
 
 
 @njit(cache=True, nogil=True)
-def _facet_gap(points, surfaces, wanted, tree, facet, work):
+def _facet_gap(field, facet):
     """The distance of a facet, and the facet where it is reached, walking from the one nearest to a corner."""
+    (points, surfaces, wanted, tree), work = field.target, field.work
     nearest, start = np.inf, -1
     for corner in surfaces.facets[facet]:
         if work.state[corner] == KNOWN and work.key[corner] < nearest:
             nearest, start = work.key[corner], work.facet[corner]
     square, partner = local_search_to_facet(points, facet, surfaces, wanted, start)
-    square, partner = search_to_facet(points, facet, surfaces.facets, tree, square, partner)
+    square, partner = search_to_facet(points, facet, tree, square, partner)
     return sqrt(square), partner
 
 

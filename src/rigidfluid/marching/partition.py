@@ -18,11 +18,10 @@ from typing import NamedTuple
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
-from rigidfluid.core.geometry.facet_tree import Tree
 from rigidfluid.core.model.types import Mesh
-from rigidfluid.marching.exact import march_on, put_back, seed
+from rigidfluid.marching.exact import Front, accept, march, put_aside, put_back, seed
 from rigidfluid.marching.field import Band, DistanceField
-from rigidfluid.marching.topology import Neighbours, Numbers, Topology
+from rigidfluid.marching.topology import Neighbours, Numbers, Target, Topology
 from rigidfluid.marching.workspace import Workspace, new_workspace
 
 NOT_REACHED = np.int32(-1)
@@ -52,13 +51,13 @@ Exchange = Callable[[Reached], Reached | None]
 
 class Halted(NamedTuple):
     """A march that has left its workspace to others: ``vertices`` in the band with their ``key`` and ``facet``, those
-    ``beyond`` it, the ``tree`` of its facets."""
+    ``beyond`` it, and its ``target``."""
 
     vertices: Numbers
     key: FloatArray
     facet: Numbers
     beyond: Numbers
-    tree: Tree
+    target: Target
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +131,7 @@ def march_part(
     values depend on that order.
     """
     chosen = [tuple(surfaces)]
-    placed = PlacedPart(part, points, part.topology.neighbours)
+    placed = PlacedPart(part, points, part.topology.adjacency.neighbours)
     [march] = march_side_by_side(placed, chosen, Band(band_width), exchange)
     if march is None:
         return DistanceField(np.empty(0, np.int32), np.empty(0), np.empty(0, np.int32))
@@ -174,19 +173,20 @@ def _go_on(
 ) -> tuple[Halted, IntArray, IntArray]:
     """March on from ``news``; return also the border rows newly reached and their places among the march's vertices."""
     part, points, neighbours = placed
-    topology, work, seeds = part.topology, part.workspace, part.topology.seeds(surfaces)
+    work = part.workspace
     if before is None:
-        (size, tree), first, beyond = seed(points, topology.surfaces, seeds.facets, seeds.whole, work), 0, 0
+        size, target = seed(points, part.topology.surfaces, part.topology.seeds(surfaces), work)
+        first = beyond = 0
     else:
         put_back(work, *before[:4])
         first = size = len(before.vertices)
-        tree, beyond = before.tree, len(before.beyond)
-    surface, counts = (topology.surfaces, seeds.wanted, tree), (first, size, beyond)
-    reached = part.border[news.row], news.key, news.facet
-    taken, (vertices, key, facet, outside) = march_on(points, neighbours, *surface, *band, work, *counts, *reached)
+        target, beyond = before.target, len(before.beyond)
+    taken = accept(part.border[news.row], news.key, news.facet, work, size)
+    touched, beyond = march(neighbours, target, band, work, Front(first, taken, beyond))
+    vertices, key, facet, outside = put_aside(work, touched, beyond)
     rows = part.border_row[vertices[taken:]]
     at_border = np.flatnonzero(rows >= 0)
-    return Halted(vertices, key, facet, outside, tree), rows[at_border].astype(np.int64), taken + at_border
+    return Halted(vertices, key, facet, outside, target), rows[at_border].astype(np.int64), taken + at_border
 
 
 def _news_of_marches(found: Reached) -> list[tuple[int, Reached]]:

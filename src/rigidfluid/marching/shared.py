@@ -76,7 +76,7 @@ class SharedMesh:
 
     def neighbours(self, points: FloatArray) -> Neighbours:
         """Neighbours in the part, with the longest edges elsewhere, for vertices at ``points`` (n, d) [length]."""
-        own, border = self.part.topology.neighbours, self.part.border
+        own, border = self.part.topology.adjacency.neighbours, self.part.border
         elsewhere, rows = np.zeros(len(points)), np.arange(len(border))
         for row, square in self._ranks.alltoall(self._addressed(rows, longest_edges(points, own, border))):
             elsewhere[border[row]] = np.maximum(elsewhere[border[row]], square)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.facet_tree import Tree
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.marching.adjacency import facets_beside, inner_vertices, is_whole, neighbours_of, rows_of
 
@@ -35,6 +36,14 @@ class Neighbours(NamedTuple):
     elsewhere: FloatArray = np.empty(0)
 
 
+class Adjacency(NamedTuple):
+    """The ``cells`` (M, d+1), numbers of those at each vertex, and its neighbours."""
+
+    cells: Numbers
+    cell_rows: Rows
+    neighbours: Neighbours
+
+
 class Surfaces(NamedTuple):
     """The boundary facets of a mesh: ``facets`` (F, d), the ``marker`` (F,) of each, the facets at each vertex.
 
@@ -48,6 +57,16 @@ class Surfaces(NamedTuple):
     beside: Numbers
     start: Numbers
     members: Numbers
+
+
+class Target(NamedTuple):
+    """Surfaces that distances are to, as they lie: vertices at ``points`` (N, d) [length], all facets of the boundary,
+    whether each surface is ``wanted``, and the ``tree`` of the facets of those."""
+
+    points: FloatArray
+    surfaces: Surfaces
+    wanted: BoolArray
+    tree: Tree
 
 
 class Seeds(NamedTuple):
@@ -69,12 +88,12 @@ class Topology:
     ) -> None:
         self.vertices = vertices
         self._seeds: dict[tuple[int, ...], Seeds] = {}
-        self.cells: Numbers = np.ascontiguousarray(cells, np.int32)
-        self.cell_rows = Rows(*rows_of(self.cells, vertices))
-        self.neighbours = Neighbours(*neighbours_of(self.cells, *self.cell_rows))
+        own: Numbers = np.ascontiguousarray(cells, np.int32)
+        cell_rows = Rows(*rows_of(own, vertices))
+        self.adjacency = Adjacency(own, cell_rows, Neighbours(*neighbours_of(own, *cell_rows)))
         corners, marker = np.ascontiguousarray(facets, np.int32), markers.astype(np.int32)
         if across is None:
-            across = inner_vertices(corners, self.cells, *self.cell_rows)
+            across = inner_vertices(corners, own, *cell_rows)
         rows = rows_of(corners, vertices)
         self.surfaces = Surfaces(corners, marker, across, facets_beside(corners, marker, *rows), *rows)
 

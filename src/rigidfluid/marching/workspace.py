@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.marching.heap import Heap
 
 FAR, TRIAL, KNOWN, BEYOND = np.int8(0), np.int8(1), np.int8(2), np.int8(3)
 """States of a vertex: not reached, in the heap, reached for good, measured and outside the band."""
@@ -20,29 +21,19 @@ class Workspace(NamedTuple):
     """Arrays with a value for each vertex: ``state``, ``key`` (squared distance in exact marches, distance in those of
     first order), and the ``facet`` nearest so far.
 
-    ``place``, ``heap`` and ``heap_key`` belong to the heap; ``touched`` lists the vertices in the band from its front,
-    and those that are BEYOND from its back.
+    Marches of first order use the ``heap``; ``touched`` lists the vertices in the band from its front, and those that
+    are BEYOND from its back.
     """
 
     state: NDArray[np.int8]
     key: FloatArray
     facet: NDArray[np.int32]
-    place: NDArray[np.int32]
-    heap: NDArray[np.int32]
-    heap_key: FloatArray
+    heap: Heap
     touched: NDArray[np.int32]
 
 
 def new_workspace(vertices: int) -> Workspace:
     """Workspace for marches over a mesh of this number of ``vertices``."""
-    numbers = [np.empty(vertices, np.int32) for _ in range(4)]
-    facet, place, heap, touched = numbers
-    return Workspace(
-        np.zeros(vertices, np.int8),
-        np.empty(vertices),
-        facet,
-        place,
-        heap,
-        np.empty(vertices),
-        touched,
-    )
+    facet, touched, entries, place = (np.empty(vertices, np.int32) for _ in range(4))
+    heap = Heap(entries, np.empty(vertices), place)
+    return Workspace(np.zeros(vertices, np.int8), np.empty(vertices), facet, heap, touched)

@@ -70,7 +70,7 @@ def test_a_tree_is_planted_unless_the_surface_is_convex_from_the_fluid(dimension
     ]:
         work = new_workspace(len(points))
         wave = exact_wave(Topology.from_mesh(mesh), points, surfaces, Band(np.inf), work)
-        assert (len(wave.tree.order) == 0) == convex
+        assert (len(wave.target.tree.order) == 0) == convex
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

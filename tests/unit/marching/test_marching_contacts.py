@@ -15,6 +15,7 @@ from rigidfluid.core.model.types import Contacts, Mesh
 from rigidfluid.detectors.fast_marching import FastMarchingDetector
 from rigidfluid.detectors.narrow_band import NarrowBandDetector, NarrowBandOptions
 from rigidfluid.errors import SceneError
+from rigidfluid.marching.contacts import Field
 from rigidfluid.marching.exact import measure
 from rigidfluid.marching.field import WAVES, Band
 from rigidfluid.marching.pairs import facet_gaps
@@ -50,18 +51,16 @@ def test_gaps_from_ragged_stars_are_those_of_all_pairs_of_facets(dimension, seed
     for number in range(seeds):
         mesh, _ = stars(dimension, number)
         topology, work = Topology.from_mesh(mesh), new_workspace(len(mesh.points))
-        star, wanted, _ = topology.seeds([0])
+        star = topology.facets_of(0)
         wave = WAVES[accuracy](topology, mesh.points, [0], Band(np.inf), work)
         if accuracy == "first-order":
-            measure(mesh.points, topology.surfaces, wanted, wave.tree, work, wave.touched)
+            measure(wave.target, work, wave.touched)
         others = np.flatnonzero(mesh.markers != 0).astype(np.int32)
-        gap, partner = np.empty(len(others)), np.empty(len(others), np.int32)
         ball = np.zeros(dimension), np.inf
-        surfaces = topology.surfaces
-        facet_gaps(mesh.points, surfaces, wanted, wave.tree, *ball, others, np.inf, True, work, gap, partner)
+        gap, _ = facet_gaps(Field(0, wave.target, work), ball, others, np.inf, True)
         for row in np.flatnonzero(np.isfinite(gap)):
             assert gap[row] == pytest.approx(
-                least(mesh.points, surfaces.facets, others[row : row + 1], star), rel=1e-12
+                least(mesh.points, topology.surfaces.facets, others[row : row + 1], star), rel=1e-12
             )
             found += 1
     assert found > 20 * seeds

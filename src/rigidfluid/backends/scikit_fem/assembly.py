@@ -50,27 +50,50 @@ class ReferenceTables(NamedTuple):
 
 
 class Cells(NamedTuple):
-    """All cells' ``nodes`` (M, b), which of them are ``straight`` and ``curved`` (C,), and the coordinates of the nodes
-    of the curved ones, ``curved_points`` (C, b, d)."""
+    """All cells' ``nodes`` (M, b), which of them are ``straight`` and ``curved`` (C,), and coordinates: ``points``
+    (N, d) starts with the vertices, ``curved_points`` (C, b, d) are the nodes of the curved ones."""
 
+    points: FloatArray
     nodes: IntArray
     straight: IntArray
     curved: IntArray
     curved_points: FloatArray
 
 
+class Pattern(NamedTuple):
+    """Neighbours of each node: rows of ``around``, sorted, that start at ``starts`` (nodes + 1,).
+
+    ``nodes`` (M, b) are the cells'; ``ranks`` (M, b, b): the place of a cell's node j among those around its node i.
+    """
+
+    nodes: IntArray
+    starts: NDArray[np.int32]
+    around: NDArray[np.int32]
+    ranks: NDArray[np.int16]
+
+
 class Sparsity(NamedTuple):
     """Places of a cell's entries in the sorted rows of the matrix, which start at ``indptr`` (unknowns + 1,).
 
     A node's d rows and a vertex' row of pressures have an entry for each component of each neighbour, then one for
-    each neighbour that is a vertex: ``vertices_around`` (nodes,). ``ranks`` (M, b, b): the place of a cell's node j
-    among the neighbours of its node i; vertices come first, so that it serves pressures too.
+    each neighbour that is a vertex: ``vertices_around`` (nodes,). The ``ranks`` are those of the `Pattern`: vertices
+    come first, so that they serve pressures too.
     """
 
     indptr: NDArray[np.int32]
     vertices_around: NDArray[np.int32]
     ranks: NDArray[np.int16]
     first_pressure: int
+
+
+class Terms(NamedTuple):
+    """`Coefficients` as the kernels take them; ``grad_div`` (M,) over the viscosity, if there is any."""
+
+    inertia: float
+    viscosity: float
+    advection: FloatArray
+    flow: FloatArray
+    grad_div: FloatArray
 
 
 def reference_tables(dimension: int) -> ReferenceTables:
@@ -111,43 +134,41 @@ class CompiledAssembly:
         self._build_sparsity()
 
     def matrix(self, points: FloatArray, coefficients: Coefficients) -> sparse.csr_array:
-        n, c, cells = self.numbering, coefficients, self._cells(points)
+        c = coefficients
         data = np.zeros(len(self._indices))  # by NumPy, whose large pages cost a tenth of Numba's small ones
         ratio = c.grad_div / c.viscosity if c.viscosity > 0.0 else c.grad_div
-        given = c.inertia, c.viscosity, c.advection, c.flow, ratio
-        kernels.assemble(data, points, cells, self._sparsity, *given, self._tables)
-        return sparse.csr_array((data, self._indices, self._sparsity.indptr), shape=(n.unknowns,) * 2)
+        terms = Terms(c.inertia, c.viscosity, c.advection, c.flow, ratio)
+        kernels.assemble(data, self._cells(points), self._sparsity, terms, self._tables)
+        return sparse.csr_array((data, self._indices, self._sparsity.indptr), shape=(self.numbering.unknowns,) * 2)
 
     def masses(self, points: FloatArray) -> Masses:
-        n, d = self.numbering, self.numbering.dimension
-        mass, divergence = np.zeros(len(self._around)), np.zeros(d * self._starts[n.vertices])
-        kernels.assemble_masses(
-            mass, divergence, points, self._cells(points), self._starts, self._sparsity.ranks, self._tables
-        )
-        columns = (d * self._around[: self._starts[n.vertices], None] + np.arange(d, dtype=np.int32)).ravel()
-        rows = d * self._starts[: n.vertices + 1]
+        n, d, pattern = self.numbering, self.numbering.dimension, self._pattern
+        mass, divergence = np.zeros(len(pattern.around)), np.zeros(d * pattern.starts[n.vertices])
+        kernels.assemble_masses(mass, divergence, self._cells(points), pattern, self._tables)
+        columns = (d * pattern.around[: pattern.starts[n.vertices], None] + np.arange(d, dtype=np.int32)).ravel()
+        rows = d * pattern.starts[: n.vertices + 1]
         return Masses(
-            sparse.csr_array((mass, self._around, self._starts), shape=(n.nodes,) * 2),
+            sparse.csr_array((mass, pattern.around, pattern.starts), shape=(n.nodes,) * 2),
             sparse.csr_array((divergence, columns, rows), shape=(n.vertices, n.nodes * d)),
         )
 
     def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:
-        load: FloatArray = kernels.apply_mass(points, self._cells(points), self._tables, field)
+        load: FloatArray = kernels.apply_mass(self._cells(points), self._tables, field)
         return load
 
     def strain_square(self, points: FloatArray, velocity: FloatArray) -> float:
-        return float(kernels.strain_square(points, self._cells(points), self._tables, velocity))
+        return float(kernels.strain_square(self._cells(points), self._tables, velocity))
 
     def divergence_square(self, points: FloatArray, velocity: FloatArray, weight: FloatArray) -> float:
-        return float(kernels.divergence_square(points, self._cells(points), self._tables, velocity, weight))
+        return float(kernels.divergence_square(self._cells(points), self._tables, velocity, weight))
 
     def _cells(self, points: FloatArray) -> Cells:
         n = self.numbering
-        return Cells(n.cell_nodes, self._straight, n.curved_cells, n.curved_cell_points(points))
+        return Cells(points, n.cell_nodes, self._straight, n.curved_cells, n.curved_cell_points(points))
 
     def _build_sparsity(self) -> None:
         n, d = self.numbering, self.numbering.dimension
-        self._starts, self._around, ranks = kernels.neighbours(n.cell_nodes, n.nodes)
-        indptr, self._indices = kernels.expand(self._starts, self._around, n.vertices, d)
-        vertices_around = np.diff(indptr)[: n.nodes * d : d] - d * np.diff(self._starts)
-        self._sparsity = Sparsity(indptr, vertices_around, ranks, n.nodes * d)
+        self._pattern = pattern = Pattern(n.cell_nodes, *kernels.neighbours(n.cell_nodes, n.nodes))
+        indptr, self._indices = kernels.expand(pattern.starts, pattern.around, n.vertices, d)
+        vertices_around = np.diff(indptr)[: n.nodes * d : d] - d * np.diff(pattern.starts)
+        self._sparsity = Sparsity(indptr, vertices_around, pattern.ranks, n.nodes * d)

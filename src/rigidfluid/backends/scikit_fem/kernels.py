@@ -1,8 +1,8 @@
 """Compiled loops over cells: the system matrix, the history's load, energies. Arrays in, arrays out.
 
-``points`` (N, d) starts with the vertices; fields on nodes are (nodes, d). ``cells`` and ``tables`` are those of
-`assembly`: straight cells are mapped by one matrix each, curved ones at each quadrature point by another. Loops over
-the basis and over axes go by the lengths of tuples, ``sizes``: known when they are compiled, so that they are unrolled.
+Fields on nodes are (nodes, d). ``cells``, ``tables``, ``pattern`` and ``sparsity`` are those of `assembly`: straight
+cells are mapped by one matrix each, curved ones at each quadrature point by another. Loops over the basis and over axes
+go by the lengths of tuples, ``sizes``: known when they are compiled, so that they are unrolled.
 """
 
 # numba compiles for the types that come; annotations would be a second, unchecked signature.
@@ -10,8 +10,23 @@ the basis and over axes go by the lengths of tuples, ``sizes``: known when they 
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, NamedTuple
+
 import numpy as np
 from numba import njit
+
+from rigidfluid.core.geometry.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from rigidfluid.backends.scikit_fem.assembly import Sizes
+
+
+class CellMasses(NamedTuple):
+    """The mass matrix ``scalar`` (b, b) of a cell and its ``flux`` (b d, d+1), -(∇·u, q)."""
+
+    scalar: FloatArray
+    flux: FloatArray
+    sizes: Sizes
 
 
 @njit(cache=True)
@@ -209,13 +224,14 @@ def scatter(data, sparsity, cell, nodes, scalar, stress, grad_div, divergence, s
 
 
 @njit(cache=True)
-def assemble(data, points, cells, sparsity, inertia, viscosity, advection, flow, grad_div, tables):
+def assemble(data, cells, sparsity, terms, tables):
     """Add to the entries ``data``, in the order of ``sparsity``, those of the matrix of
 
-    inertia (u, v) + (a·∇u, v) + ½ ((∇·c) u, v) + viscosity ((∇u + ∇uᵀ, ∇v) + (r ∇·u, ∇·v)) - (p, ∇·v) - (∇·u, q).
+    inertia (u, v) + (a·∇u, v) + ½ ((∇·c) u, v) + viscosity ((∇u + ∇uᵀ, ∇v) + (r ∇·u, ∇·v)) - (p, ∇·v) - (∇·u, q),
 
-    ``advection`` a and ``flow`` c, (nodes, d), already hold the density; ``grad_div`` r (M,).
+    whose coefficients are the ``terms``.
     """
+    inertia, viscosity, advection, flow, grad_div = terms
     sizes = tables.sizes
     b, d = len(sizes.basis), len(sizes.axes)
     jacobian, inverse, gradient = np.empty((d, d)), np.empty((d, d)), np.empty((b, d))
@@ -224,7 +240,7 @@ def assemble(data, points, cells, sparsity, inertia, viscosity, advection, flow,
     moving = np.any(advection) or np.any(flow)
     for cell in cells.straight:
         nodes = cells.nodes[cell]
-        straight_jacobian(points, nodes, jacobian, sizes)
+        straight_jacobian(cells.points, nodes, jacobian, sizes)
         det = inverted(jacobian, inverse)
         for i in range(b):
             for j in range(b):
@@ -265,16 +281,17 @@ def assemble(data, points, cells, sparsity, inertia, viscosity, advection, flow,
 
 
 @njit(cache=True)
-def assemble_masses(mass, divergence, points, cells, starts, ranks, tables):
-    """Add (φⱼ, φᵢ) to ``mass`` and -(∇·u, q) to ``divergence``, on the pattern that nodes have with nodes: row i starts
-    at ``starts`` (nodes + 1,), and at d times that in the divergence, which has d columns for each neighbour."""
+def assemble_masses(mass, divergence, cells, pattern, tables):
+    """Add (φⱼ, φᵢ) to ``mass`` and -(∇·u, q) to ``divergence``, on the ``pattern`` of the nodes; the divergence has d
+    columns for each neighbour."""
     sizes = tables.sizes
     b, d = len(sizes.basis), len(sizes.axes)
     jacobian, inverse, gradient = np.empty((d, d)), np.empty((d, d)), np.empty((b, d))
     scalar, flux = np.empty((b, b)), np.empty((b * d, d + 1))
+    masses = CellMasses(scalar, flux, sizes)
     for cell in cells.straight:
         nodes = cells.nodes[cell]
-        straight_jacobian(points, nodes, jacobian, sizes)
+        straight_jacobian(cells.points, nodes, jacobian, sizes)
         det = inverted(jacobian, inverse)
         for i in range(b):
             for j in range(b):
@@ -286,7 +303,7 @@ def assemble_masses(mass, divergence, points, cells, starts, ranks, tables):
                     for r in range(len(sizes.axes)):
                         total += inverse[r, a] * tables.flux[i, r, k]
                     flux[i * d + a, k] = det * total
-        scatter_masses(mass, divergence, starts, ranks[cell], nodes, scalar, flux, sizes)
+        scatter_masses(mass, divergence, pattern, cell, masses)
     rule = tables.curved
     for number, cell in enumerate(cells.curved):
         scalar[:] = 0.0
@@ -303,13 +320,15 @@ def assemble_masses(mass, divergence, points, cells, starts, ranks, tables):
                 for a in range(len(sizes.axes)):
                     for k in range(len(sizes.axes) + 1):
                         flux[i * d + a, k] -= dx * gradient[i, a] * rule.linear[q, k]
-        scatter_masses(mass, divergence, starts, ranks[cell], cells.nodes[cell], scalar, flux, sizes)
+        scatter_masses(mass, divergence, pattern, cell, masses)
 
 
 @njit(cache=True)
-def scatter_masses(mass, divergence, starts, ranks, nodes, scalar, flux, sizes):
-    """Add one cell's ``scalar`` (b, b) and ``flux`` (b d, d+1) to the entries of `assemble_masses`."""
+def scatter_masses(mass, divergence, pattern, cell, masses):
+    """Add one cell's ``masses`` to the entries of `assemble_masses`."""
+    scalar, flux, sizes = masses
     b, d = len(sizes.basis), len(sizes.axes)
+    starts, nodes, ranks = pattern.starts, pattern.nodes[cell], pattern.ranks[cell]
     for i in range(b):
         for j in range(b):
             mass[starts[nodes[i]] + ranks[i, j]] += scalar[i, j]
@@ -321,14 +340,14 @@ def scatter_masses(mass, divergence, starts, ranks, nodes, scalar, flux, sizes):
 
 
 @njit(cache=True)
-def apply_mass(points, cells, tables, field):
+def apply_mass(cells, tables, field):
     """(field, v) for every nodal test function v, (nodes, d)."""
-    d = points.shape[1]
+    d = cells.points.shape[1]
     jacobian, inverse, mass = np.empty((d, d)), np.empty((d, d)), np.empty_like(tables.mass)
     result = np.zeros_like(field)
     for cell in cells.straight:
         nodes = cells.nodes[cell]
-        straight_jacobian(points, nodes, jacobian, tables.sizes)
+        straight_jacobian(cells.points, nodes, jacobian, tables.sizes)
         add_product(result, inverted(jacobian, inverse), tables.mass, nodes, field, tables.sizes)
     rule = tables.curved
     for number, cell in enumerate(cells.curved):
@@ -355,16 +374,16 @@ def add_product(result, factor, mass, nodes, field, sizes):
 
 
 @njit(cache=True)
-def strain_square(points, cells, tables, velocity):
+def strain_square(cells, tables, velocity):
     """∫ ½ (∇u + ∇uᵀ):(∇u + ∇uᵀ) over the mesh; times the viscosity it is the dissipation."""
-    d = points.shape[1]
+    d = cells.points.shape[1]
     jacobian, inverse, slope = np.empty((d, d)), np.empty((d, d)), np.empty((d, d))
     gradient = np.empty((cells.nodes.shape[1], d))
     total = 0.0
     rule = tables.flat
     for cell in cells.straight:
         nodes = cells.nodes[cell]
-        straight_jacobian(points, nodes, jacobian, tables.sizes)
+        straight_jacobian(cells.points, nodes, jacobian, tables.sizes)
         det = inverted(jacobian, inverse)
         for q in range(len(rule.weight)):
             physical_gradients(rule, q, inverse, gradient, tables.sizes)
@@ -380,15 +399,15 @@ def strain_square(points, cells, tables, velocity):
 
 
 @njit(cache=True)
-def divergence_square(points, cells, tables, velocity, weight):
+def divergence_square(cells, tables, velocity, weight):
     """∫ w (∇·u)² over the mesh, with the ``weight`` w (M,) of each cell."""
-    d = points.shape[1]
+    d = cells.points.shape[1]
     jacobian, inverse, gradient = np.empty((d, d)), np.empty((d, d)), np.empty((cells.nodes.shape[1], d))
     total = 0.0
     rule = tables.flat
     for cell in cells.straight:
         nodes = cells.nodes[cell]
-        straight_jacobian(points, nodes, jacobian, tables.sizes)
+        straight_jacobian(cells.points, nodes, jacobian, tables.sizes)
         dx = weight[cell] * inverted(jacobian, inverse)
         for q in range(len(rule.weight)):
             physical_gradients(rule, q, inverse, gradient, tables.sizes)

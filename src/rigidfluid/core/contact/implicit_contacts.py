@@ -46,6 +46,22 @@ _ROUNDING = 1e-14
 M = TypeVar("M", bound=BodyDynamics)
 
 
+class Encounter(NamedTuple, Generic[M]):
+    """Bodies and contacts at the start of a step.
+
+    ``start`` are the m contacts that may come into range of the ``law`` in the step of this ``size`` Δt [time],
+    ``contacts_at`` gives the same contacts, in the same order, at another pose; ``wall_velocity`` is as in
+    `relative_motion`, None for walls at rest.
+    """
+
+    law: ForceLaw
+    movement: M
+    start: Contacts
+    contacts_at: Callable[[Pose], Contacts]
+    size: float
+    wall_velocity: WallVelocities | None
+
+
 class Crossing(NamedTuple, Generic[M]):
     """Result of a step: the bodies' ``movement`` at its end, the contacts' mean ``wrench``, the energy ``lost``, the
     work ``driven`` into the bodies by sliding walls, and the energy ``stored`` in bodies and contacts [energy]."""
@@ -57,14 +73,7 @@ class Crossing(NamedTuple, Generic[M]):
     stored: float
 
 
-def implicit_contact_step(
-    law: ForceLaw,
-    movement: M,
-    start: Contacts,
-    contacts_at: Callable[[Pose], Contacts],
-    size: float,
-    wall_velocity: WallVelocities | None = None,
-) -> Crossing[M]:
+def implicit_contact_step(encounter: Encounter[M]) -> Crossing[M]:
     """Advance x₁ = x₀ + Δt (U₀ + U₁)/2, U₁ = U₀ + Δt (A + M⁻¹ Σ f n), with one force f in each contact for the whole
     step.
 
@@ -75,12 +84,11 @@ def implicit_contact_step(
     with the mean velocity, across the surfaces implicitly, along them with that of the iteration before. The step is of
     second order where it resolves the contact, and keeps the energy at any length.
 
-    ``movement`` at the start is left as it is; ``start`` are the m contacts there that may come into range in the step
-    of this ``size`` Δt [time], ``contacts_at`` gives the same contacts, in the same order, at another pose;
-    ``wall_velocity`` is as in `relative_motion`, None for walls at rest. StepRejected is raised if bodies would
-    overlap, no forces are found, or bodies turn too far for the forces to keep the energy.
+    The encounter's movement is left as it is. StepRejected is raised if bodies would overlap, no forces are found, or
+    bodies turn too far for the forces to keep the energy.
     """
-    iterate = _straight_on(movement, start, size, wall_velocity)
+    law, start, size, wall_velocity = encounter.law, encounter.start, encounter.size, encounter.wall_velocity
+    iterate = _straight_on(encounter)
     force, gap, dampers = np.zeros(len(start)), start.gap, _dampers(law, iterate, size)
     for update in range(MOST_UPDATES):
         offset, free = iterate.way - iterate.gap, iterate.gap - iterate.compliance @ force
@@ -90,7 +98,7 @@ def implicit_contact_step(
         push = force[:, None] * iterate.middle.normal + dampers.along
         before = iterate
         acting = contact_wrench(iterate.middle, push, iterate.pose)
-        iterate = _evaluate(law, movement, start, contacts_at, acting, iterate.place, size, wall_velocity)
+        iterate = _evaluate(encounter, acting, iterate.place)
         used = dampers
         if update < MOST_FORCE_UPDATES:
             dampers = _dampers(law, iterate, size)
@@ -103,8 +111,8 @@ def implicit_contact_step(
             driven = 0.0
             if wall_velocity is not None:
                 driven = size * float(np.sum(push * wall_velocity(start.body_b, centre(iterate.middle))))
-            stored = _most_stored(law, movement, start, iterate)
-            _refuse_to_create(law, start, iterate, before.scale * spring, stored)
+            stored = _most_stored(encounter, iterate)
+            _refuse_to_create(encounter, iterate, before.scale * spring, stored)
             return _crossing(iterate, used, size, driven, stored)
         gap = iterate.gap
     raise _rejected(f"no forces after {MOST_UPDATES} updates of the normals")
@@ -138,8 +146,9 @@ class _Dampers(NamedTuple):
     along: FloatArray
 
 
-def _straight_on(movement: M, start: Contacts, size: float, wall_velocity: WallVelocities | None) -> _Iterate[M]:
+def _straight_on(encounter: Encounter[M]) -> _Iterate[M]:
     """First guess, which accepts overlaps: without contact forces, with all surfaces flat."""
+    _, movement, start, _, size, wall_velocity = encounter
     trial, none = movement.copied(), nothing(movement.pose)
     trial.kick(none, 0.5 * size)
     motion = relative_motion(start, trial, wall_velocity)
@@ -149,16 +158,8 @@ def _straight_on(movement: M, start: Contacts, size: float, wall_velocity: WallV
     return _Iterate(trial, *place, start, motion, way, start.gap + way, scale, compliance, none)
 
 
-def _evaluate(
-    law: ForceLaw,
-    movement: M,
-    start: Contacts,
-    contacts_at: Callable[[Pose], Contacts],
-    wrench: Wrench,
-    place: Kinematics,
-    size: float,
-    wall_velocity: WallVelocities | None,
-) -> _Iterate[M]:
+def _evaluate(encounter: Encounter[M], wrench: Wrench, place: Kinematics) -> _Iterate[M]:
+    law, movement, start, contacts_at, size, wall_velocity = encounter
     trial = movement.copied()
     trial.kick(wrench, 0.5 * size, place)
     kicked = trial.motion_twist
@@ -213,13 +214,14 @@ def _mean(twists: Sequence[Twist]) -> Twist:
     )
 
 
-def _most_stored(law: ForceLaw, movement: BodyDynamics, start: Contacts, iterate: _Iterate[M]) -> float:
+def _most_stored(encounter: Encounter[M], iterate: _Iterate[M]) -> float:
     """Greatest energy at the start, at the end, or in a contact that is just in range: a smaller scale is not worth
     another step [energy]."""
+    law, start = encounter.law, encounter.start
     end = replace(start, gap=iterate.gap)
     just_in = [replace(start, gap=np.full(len(start), JUST_IN * begin)) for begin in law.ranges]
     touching = [float(law.energy(contacts).max()) for contacts in just_in]
-    return max(_stored(law, movement, start), _stored(law, iterate.movement, end), *touching)
+    return max(_stored(law, encounter.movement, start), _stored(law, iterate.movement, end), *touching)
 
 
 def _stored(law: ForceLaw, movement: BodyDynamics, contacts: Contacts) -> float:
@@ -234,8 +236,9 @@ def _stored(law: ForceLaw, movement: BodyDynamics, contacts: Contacts) -> float:
     return energy
 
 
-def _refuse_to_create(law: ForceLaw, start: Contacts, iterate: _Iterate[M], force: FloatArray, stored: float) -> None:
+def _refuse_to_create(encounter: Encounter[M], iterate: _Iterate[M], force: FloatArray, stored: float) -> None:
     """Raise StepRejected if the work of the springs' ``force`` (m,) is not the loss of their energy."""
+    law, start = encounter.law, encounter.start
     end = replace(start, gap=iterate.gap)
     created = float(np.sum(force * iterate.way + law.energy(end) - law.energy(start)))
     if abs(created) > KEPT * stored:

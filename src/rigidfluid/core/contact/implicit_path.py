@@ -8,7 +8,7 @@ from typing import TypeVar
 from rigidfluid.core.contact.body_step import BodyStep, add_wrench, arrived
 from rigidfluid.core.contact.contact_load import driven_bodies
 from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
-from rigidfluid.core.contact.implicit_contacts import KEPT, implicit_contact_step
+from rigidfluid.core.contact.implicit_contacts import KEPT, Encounter, implicit_contact_step
 from rigidfluid.core.contact.look_ahead import fastest_speed, foreseen
 from rigidfluid.core.contact.substep_path import fly_freely, spring_parts
 from rigidfluid.core.mechanics.wrenches import nothing, power
@@ -73,7 +73,8 @@ def implicit_coupled(system: System, law: ForceLaw, movement: BodyDynamics, near
         path, movement = _implicit_step(system, law, movement, start, followed, part)
         impulse = add_wrench(impulse, path.impulse, 1.0)
         lost, actuator_work = lost + path.dissipated, actuator_work + path.actuator_work
-    return arrived(movement, impulse, lost, actuator_work, IMPLICIT_PARTS, movement.friction_loss)
+    path = arrived(movement, impulse, lost, actuator_work, IMPLICIT_PARTS)
+    return replace(path, friction=movement.friction_loss)
 
 
 def _implicit_step(
@@ -86,7 +87,8 @@ def _implicit_step(
 ) -> tuple[BodyStep, M]:
     """Advance by one implicit step with the contacts ``followed``, at its start ``start``; return also the movement at
     its end."""
-    crossing = implicit_contact_step(law, movement, start, followed.extrapolate, size, system.wall_velocity)
+    encounter = Encounter(law, movement, start, followed.extrapolate, size, system.wall_velocity)
+    crossing = implicit_contact_step(encounter)
     end, wrench, lost, driven, stored = crossing
     _refuse_unseen(law, followed, end.pose, KEPT * stored)
     impulse = Wrench(size * wrench.force, size * wrench.torque)

@@ -21,17 +21,17 @@ def first_crossing(points: FloatArray, facets: IntArray) -> tuple[int, int] | No
     corners, d = facets.astype(np.int32), points.shape[1]
     edges = corners if d == 2 else np.concatenate([corners[:, [i, (i + 1) % d]] for i in range(d)])
     points = np.ascontiguousarray(points, dtype=float)
-    met = crossings(points, edges, corners, build_tree(points, corners, np.arange(len(corners), dtype=np.int32)))
+    met = crossings(points, edges, build_tree(points, corners, np.arange(len(corners), dtype=np.int32)))
     return (int(met[0, 0]) % len(facets), int(met[0, 1])) if len(met) else None
 
 
 @njit(cache=True, nogil=True)
-def crossings(points, edges, facets, tree):
+def crossings(points, edges, tree):
     """Pairs (c, 2) of an edge and a facet of the tree that meet without sharing a vertex; in space not within a plane.
 
-    ``points`` (N, d) of both, ``edges`` (E, 2), ``facets`` (F, d): in the plane edges too.
+    ``points`` (N, d) of both, ``edges`` (E, 2); in the plane facets are edges too.
     """
-    found = [(0, 0) for _ in range(0)]
+    facets, found = tree.facets, [(0, 0) for _ in range(0)]
     for edge in range(len(edges)):
         for facet in leaves_beside(points, edges[edge], tree):
             if _apart(points, edges[edge], facets[facet]) or _share(edges[edge], facets[facet]):

@@ -133,7 +133,7 @@ class FacetSurface(Surface):
         first = self._measured(points, facet, bits, weights)
         within = np.where(first.distance > 0, np.minimum(reach, first.distance + spread), 0.0)
         query, others, their_bits, their_weights = facets_within(
-            self._points, self._vertices, self.tree, np.ascontiguousarray(points, dtype=float), within
+            self._points, self.tree, np.ascontiguousarray(points, dtype=float), within
         )
         face, total = self._faces.numbers[others, their_bits - 1], len(self._faces.facets_at)
         place, row, times = np.unique(query * total + face, return_index=True, return_counts=True)
@@ -157,7 +157,7 @@ class FacetSurface(Surface):
         from rigidfluid.core.geometry.facet_tree import nearest_facets
 
         queries = np.ascontiguousarray(points, dtype=float)
-        nearest, bits, weights = nearest_facets(self._points, self._vertices, self.tree, queries)
+        nearest, bits, weights = nearest_facets(self._points, self.tree, queries)
         return nearest, bits, weights[:, : self._points.shape[1]]
 
     def _measured(self, points: FloatArray, facet: IntArray, bits: IntArray, weights: FloatArray) -> _Measured:

@@ -27,8 +27,10 @@ _NEXT_TO_NOTHING = 1e-300
 
 
 class Tree(NamedTuple):
-    """``order`` of the facets along the curve, ``boxes`` (nodes, 2, d), the lower and upper corner of each [length]."""
+    """All ``facets`` (F, d), ``order`` of those in the tree along the curve, ``boxes`` (nodes, 2, d), the lower and
+    upper corner of each [length]."""
 
+    facets: NDArray[np.int32]
     order: NDArray[np.int32]
     boxes: FloatArray
 
@@ -51,19 +53,19 @@ def build_tree(points, facets, chosen):
         for k in range(points.shape[1]):
             boxes[node, 0, k] = min(boxes[2 * node, 0, k], boxes[2 * node + 1, 0, k])
             boxes[node, 1, k] = max(boxes[2 * node, 1, k], boxes[2 * node + 1, 1, k])
-    return Tree(order, boxes)
+    return Tree(facets, order, boxes)
 
 
 @njit(cache=True, nogil=True)
-def empty_tree(dimension):
-    """A tree of no facets, in which nothing is found."""
-    return Tree(np.empty(0, np.int32), np.empty((0, 2, dimension)))
+def empty_tree(facets):
+    """A tree of none of the ``facets``, in which nothing is found."""
+    return Tree(facets, np.empty(0, np.int32), np.empty((0, 2, facets.shape[1])))
 
 
 @njit(cache=True, nogil=True, forceinline=True)
-def search_to_vertex(points, vertex, facets, tree, square, facet):
+def search_to_vertex(points, vertex, tree, square, facet):
     """``square`` and ``facet``, or what in the tree is nearer to a vertex: least squared distance and where."""
-    order, boxes = tree.order, tree.boxes
+    facets, order, boxes = tree
     node = _leaf(points, (vertex,), boxes, 1, square)
     while node > 0:
         first = (node - len(boxes) // 2) * LEAF
@@ -76,12 +78,12 @@ def search_to_vertex(points, vertex, facets, tree, square, facet):
 
 
 @njit(cache=True, nogil=True)
-def nearest_facets(points, facets, tree, queries):
+def nearest_facets(points, tree, queries):
     """Nearest facet to each of the points ``queries`` (N, d), bits of the corners that carry weight, the weights.
 
     Each query is the last of ``points`` for a while, since distances are those of vertices.
     """
-    last = len(points)
+    facets, last = tree.facets, len(points)
     extended = np.empty((last + 1, points.shape[1]))
     extended[:last] = points
     nearest = np.empty(len(queries), np.int64)
@@ -91,20 +93,20 @@ def nearest_facets(points, facets, tree, queries):
         extended[last] = queries[row]
         guess = _facet_near(extended, last, tree)
         square = vertex_to_facet(extended, last, facets, guess)[0]
-        facet = search_to_vertex(extended, last, facets, tree, square, guess)[1]
+        facet = search_to_vertex(extended, last, tree, square, guess)[1]
         nearest[row] = facet
         _, bits[row], weights[row, 0], weights[row, 1], weights[row, 2] = vertex_to_facet(extended, last, facets, facet)
     return nearest, bits, weights
 
 
 @njit(cache=True, nogil=True)
-def facets_within(points, facets, tree, queries, reach):
+def facets_within(points, tree, queries, reach):
     """All facets within ``reach`` (N,) of each of the points ``queries`` (N, d), none at zero reach: the query, the
     facet, bits of the corners that carry weight, the weights."""
     last = len(points)
     extended = np.empty((last + 1, points.shape[1]))
     extended[:last] = points
-    order, boxes = tree.order, tree.boxes
+    facets, order, boxes = tree
     pairs = [(0, 0) for _ in range(0)]
     for row in range(len(queries)):
         extended[last] = queries[row]
@@ -141,9 +143,9 @@ def leaves_beside(points, corners, tree):
 
 
 @njit(cache=True, nogil=True)
-def search_to_facet(points, target, facets, tree, square, facet):
+def search_to_facet(points, target, tree, square, facet):
     """``square`` and ``facet``, or what in the tree is nearer to the facet ``target``."""
-    order, boxes = tree.order, tree.boxes
+    facets, order, boxes = tree
     corners = facets[target, 0], facets[target, 1], facets[target, -1]
     node = _leaf(points, corners, boxes, 1, square)
     while node > 0:

@@ -15,21 +15,27 @@ from rigidfluid.core.model.types import Pose, Wrench
 
 
 @dataclass(frozen=True)
-class DrivenCoordinate(Constraint):
-    """The coordinate is that of a drive; whole periods of difference are none."""
+class _AlongCoordinate(Constraint):
+    """Acts along a coordinate."""
 
     coordinate: Coordinate
-    drive: Drive
-
-    @property
-    def compliance(self) -> FloatArray:
-        return np.zeros(1)
 
     def directions(self, at: PlacedPair) -> tuple[FloatArray, FloatArray]:
         return self.coordinate.directions(at)
 
     def levers(self, at: PlacedPair) -> FloatArray:
         return self.coordinate.levers(at)
+
+
+@dataclass(frozen=True)
+class DrivenCoordinate(_AlongCoordinate):
+    """The coordinate is that of a drive; whole periods of difference are none."""
+
+    drive: Drive
+
+    @property
+    def compliance(self) -> FloatArray:
+        return np.zeros(1)
 
     def misfit(self, at: PlacedPair, time: float) -> FloatArray:
         return np.array([remainder(self.coordinate.value(at) - self.drive.value(time), self.coordinate.period)])
@@ -39,21 +45,14 @@ class DrivenCoordinate(Constraint):
 
 
 @dataclass(frozen=True)
-class CoordinateDamper(Constraint):
+class CoordinateDamper(_AlongCoordinate):
     """Resists the rate of the coordinate."""
 
-    coordinate: Coordinate
     damping: float
 
     @property
     def compliance(self) -> FloatArray:
         return np.array([1.0 / self.damping])
-
-    def directions(self, at: PlacedPair) -> tuple[FloatArray, FloatArray]:
-        return self.coordinate.directions(at)
-
-    def levers(self, at: PlacedPair) -> FloatArray:
-        return self.coordinate.levers(at)
 
     def misfit(self, at: PlacedPair, time: float) -> FloatArray:
         return np.zeros(0)

@@ -36,7 +36,7 @@ def rotate_freely(
     if orientation.shape[1] == 1:
         return orientation + time * angular_momentum / inertia[:, 0]
     result = orientation.copy()
-    body, turned = _turn(result, angular_momentum, inertia, time, LARGEST_TURN, _STAGES, MOST_TURNED)
+    body, turned = _turn(result, angular_momentum, inertia, time)
     if turned > MOST_TURNED:
         raise StepRejected(
             f"body.{body}.angular_velocity",
@@ -48,7 +48,7 @@ def rotate_freely(
 
 
 @njit(cache=True)
-def _turn(orientation, angular_momentum, inertia, time, largest_turn, stages, most_turned):
+def _turn(orientation, angular_momentum, inertia, time):
     """Turn all in place, but stop at a body that may turn by too much; return that one, or the last, and its angle
     [rad]."""
     body, turned = 0, 0.0
@@ -58,9 +58,9 @@ def _turn(orientation, angular_momentum, inertia, time, largest_turn, stages, mo
             continue
         inverse = np.linalg.inv(inertia[body])
         turned = abs(time) * (np.sqrt((angular_momentum[body] ** 2).sum()) * np.sqrt((inverse**2).sum()))
-        if turned > most_turned:
+        if turned > MOST_TURNED:
             break
-        _tumble(orientation[body], angular_momentum[body], inverse, time, int(np.ceil(turned / largest_turn)), stages)
+        _tumble(orientation[body], angular_momentum[body], inverse, time, int(np.ceil(turned / LARGEST_TURN)))
     return body, turned
 
 
@@ -92,9 +92,9 @@ def _spin(orientation, momentum, body, factor):
 
 
 @njit(cache=True)
-def _tumble(quaternion, momentum, inverse, time, steps, stages):
+def _tumble(quaternion, momentum, inverse, time, steps):
     for _ in range(steps):
-        for stage in stages:
+        for stage in _STAGES:
             _midpoint(quaternion, momentum, inverse, stage * time / steps)
 
 

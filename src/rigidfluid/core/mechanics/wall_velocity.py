@@ -28,10 +28,6 @@ class WallVelocity:
         spin = np.tile(self.angular_velocity, (len(points), 1))
         return np.asarray(self.velocity + cross(spin, points - self.centre))
 
-    def velocity_at(self, time: float, points: FloatArray) -> FloatArray:
-        """Velocity (N, d) at ``points`` (N, d), the same at any time [length/time]."""
-        return self(points)
-
 
 class SlidingWalls:
     """Velocities of all walls that slide, by surface number."""
