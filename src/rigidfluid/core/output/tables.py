@@ -46,7 +46,7 @@ class Prefix:
             raise OutputError(str(path), found, allowed, "Restore the file, or run without --resume.")
 
     def _found(self, path: Path) -> str:
-        """What is wrong with a file, empty if nothing is."""
+        """Difference of a file from it in words, empty where there is none."""
         if not path.is_file():
             return "no such file"
         with path.open("rb") as file:
