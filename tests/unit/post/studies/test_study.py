@@ -31,7 +31,7 @@ from rigidfluid.post.studies.model import ErrorTable, FigureTable, Settings, Stu
 from rigidfluid.post.studies.plot import error_plot
 from rigidfluid.post.studies.results import Results, most_expensive, pareto_front
 from rigidfluid.post.studies.rows import short_text
-from rigidfluid.post.studies.run import STUDY
+from rigidfluid.post.studies.run import STUDY as FILES
 from rigidfluid.post.studies.scene_subject import SceneSubject
 from rigidfluid.post.studies.subject import Outcome
 from rigidfluid.post.studies.table import read_rows
@@ -359,7 +359,7 @@ def test_missing_study_file(tmp_path: Path) -> None:
 
 
 def test_a_table_that_is_none(write: Write, tmp_path: Path) -> None:
-    take_folder(tmp_path, STUDY, anew=True).close()
+    take_folder(tmp_path, FILES, anew=True).close()
     (tmp_path / "study.csv").write_text("identity,status\n1234,complete\n")
     with pytest.raises(OutputError, match=r"study\.csv.*Use --fresh"):
         run_study(load_study(write()), tmp_path)
