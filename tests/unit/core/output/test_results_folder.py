@@ -20,7 +20,7 @@ from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import columns
 from rigidfluid.core.output.results_folder import take_folder
 from rigidfluid.core.output.run_files import FILES, PICTURES, RUN
-from rigidfluid.core.run.run import run as simulate
+from rigidfluid.core.run.run import simulate
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import OutputError
 from rigidfluid.post.comparison.compare import product_of
