@@ -23,7 +23,7 @@ JsonFile = Annotated[Path | None, typer.Option("--json", metavar="FILE", help="W
 
 def write_json(data: object, path: Path) -> None:
     """Write numbers, text, lists and mappings as JSON; raises OutputError if the file cannot be written."""
-    from rigidfluid.core.output.writer import writing
+    from rigidfluid.core.output.disk import writing
 
     with writing(path):
         path.write_text(json.dumps(data, indent=2, allow_nan=False) + "\n", encoding="utf-8")

@@ -8,6 +8,8 @@ RigidfluidError
 ├── OutputError         a result cannot be written or read back
 └── StepError           the simulation cannot go on, even with the shortest step
     └── StepRejected    one attempted step is not usable; the loop retries it shorter
+
+RunWarning tells of what throws doubt on the results of a run that came to its end.
 """
 
 from __future__ import annotations
@@ -71,3 +73,7 @@ class StepRejected(StepError):
 
 class SharedInterrupt(KeyboardInterrupt):
     """Ctrl-C on one of several processes, raised on all of them at the same exchange."""
+
+
+class RunWarning(UserWarning):
+    """Something throws doubt on the results of a run, as energy that was created."""

@@ -164,7 +164,7 @@ def test_ctrl_c_on_one_process_ends_all_with_a_summary(mpi, mpirun, tmp_path, ba
     signal.signal(signal.SIGINT, before)
     while not (tmp_path / "fields" / "000001.pvtu").exists() and process.poll() is None:
         time.sleep(0.02)
-    os.kill(int((tmp_path / "run.lock").read_text()), signal.SIGINT)
+    os.kill(int((tmp_path / "run.lock").read_text().split()[0]), signal.SIGINT)
     _, complaint = process.communicate(timeout=900)
     assert process.returncode != 0
     assert complaint.count("Interrupted.") == 1

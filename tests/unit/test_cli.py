@@ -178,7 +178,7 @@ def test_interruption_tells_how_to_go_on(monkeypatch: pytest.MonkeyPatch, tmp_pa
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(rigidfluid.core.run.run, "run", interrupted)
+    monkeypatch.setattr(rigidfluid.core.run.run, "simulate", interrupted)
     result = rigidfluid_command("run", SCENE, "--out", tmp_path)
     assert result.exit_code == 130
     assert "--resume" in result.stderr
@@ -212,7 +212,7 @@ def test_run_with_a_fluid_ends_with_its_reynolds_numbers(monkeypatch: pytest.Mon
     parts = ("created", "lost", "unaccounted", "path_friction", "grad_div", "put_in")
     shares = dict.fromkeys(parts, 0.0) | {"unaccounted": -1e-9}
     history.summary = figures | {"files": [tmp_path / "bodies.csv"], "energy": shares | {"warnings": []}}
-    monkeypatch.setattr(rigidfluid.core.run.run, "run", lambda *_, finished, **__: finished(history))
+    monkeypatch.setattr(rigidfluid.core.run.run, "simulate", lambda *_, finished, **__: finished(history))
     text = rigidfluid_command("run", SCENE, "--out", tmp_path).stdout
     assert "highest Reynolds number: 17.46 with the density of the solid, 13.97 with that of the fluid" in text
     assert "position at the end: ball0 (1, 0), " in text

@@ -89,7 +89,7 @@ def test_what_one_process_meets_alone_ends_all_and_is_shown(monkeypatch, tmp_pat
 
     ends = []
     monkeypatch.setattr(Launch, "end", lambda launch: ends.append(launch))
-    monkeypatch.setattr(rigidfluid.core.run.run, "run", fail)
+    monkeypatch.setattr(rigidfluid.core.run.run, "simulate", fail)
     result = command(monkeypatch, 1, "run", scene_file(tmp_path))
     assert bool(ends) == ended
     assert text in result.stderr

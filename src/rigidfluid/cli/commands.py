@@ -80,7 +80,7 @@ def run(scene: SceneFile, out: OutFolder = None, assignments: Assignments = None
     with reported("The same command with --resume goes on from the last checkpoint."):
         with no_collection():
             from rigidfluid.core.case.load import load_scene
-            from rigidfluid.core.run.run import run as simulate
+            from rigidfluid.core.run.run import simulate
 
             loaded = load_scene(scene, assignments or ())
         folder = out or Path("out") / loaded.name

@@ -7,13 +7,25 @@ from typing import Annotated, Literal
 
 import typer
 
+
+def named_path(text: str) -> Path:
+    """Path of an option; an empty one would be the working folder, unasked."""
+    if not text:
+        raise typer.BadParameter("an empty name; allowed is a path, such as '.' for the working folder")
+    return Path(text)
+
+
 Folder = Annotated[Path, typer.Argument(metavar="DIR", help="Folder that a run has written.")]
-OutFolder = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Where to write; default out/<name>.")]
+OutFolder = Annotated[
+    Path | None, typer.Option("--out", parser=named_path, metavar="DIR", help="Where to write; default out/<name>.")
+]
 CompareFolder = Annotated[
-    Path | None, typer.Option("--out", metavar="DIR", help="Where to write; default out/<name>_compare.")
+    Path | None,
+    typer.Option("--out", parser=named_path, metavar="DIR", help="Where to write; default out/<name>_compare."),
 ]
 MeshFolder = Annotated[
-    Path | None, typer.Option("--out", metavar="DIR", help="Where to write; default out/<name>_mesh.")
+    Path | None,
+    typer.Option("--out", parser=named_path, metavar="DIR", help="Where to write; default out/<name>_mesh."),
 ]
 Resume = Annotated[bool, typer.Option("--resume", help="Go on from the last checkpoint in DIR.")]
 StudyFile = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]

@@ -23,7 +23,9 @@ from rigidfluid.domains.closed_form import Flat, Form, components, form_of_edge,
 from rigidfluid.domains.formed_surface import FormedSurface
 from rigidfluid.domains.naming import Labels, Part, order_surfaces, surface_names
 from rigidfluid.domains.orientation import facing_the_fluid
+from rigidfluid.domains.trial import require_survival
 from rigidfluid.errors import MeshError, SceneError
+from rigidfluid.regular_file import MOST_GEOMETRY, require_regular
 
 _FACETS = 30
 """Facets along the longest side of the domain, at least, by which faces are found."""
@@ -68,6 +70,8 @@ class Cad(Domain):
 
     def __init__(self, options: CadOptions, dimension: int) -> None:
         super().__init__(options, dimension)
+        require_regular(Path(options.file), "domain.file", MOST_GEOMETRY)
+        require_survival("cad", Path(options.file), dimension)
         self._shape, self._unit = _read(options, dimension)
         parts = [self._part(number) for number in range(1, len(self._sides) + 1)]
         self._names = surface_names(parts, options.faces)
@@ -158,15 +162,13 @@ def _read(options: CadOptions, dimension: int) -> tuple[Any, float]:
     from netgen import meshing, occ
 
     path = Path(options.file)
-    if not path.is_file():
-        raise SceneError("domain.file", str(path), "a file that is there", "Check the path.")
     if path.suffix.lower() not in _SUFFIXES:
         remedy = "Write it in one of those; a mesh is read by type = 'mesh'."
         raise SceneError("domain.file", str(path), f"one of {', '.join(_SUFFIXES)}", remedy)
     try:
         shape = occ.OCCGeometry(str(path), dim=dimension).shape
     except (meshing.NgException, occ.OCCException, RuntimeError) as error:
-        found = f"{path}, which Open CASCADE cannot read ({str(error).strip()})"
+        found = f"{path}, which Open CASCADE cannot read ({type(error).__name__})"
         raise SceneError("domain.file", found, "a whole CAD file", "Write it anew.") from error
     solids, faces = list(shape.solids), list(shape.faces)
     whole = solids if dimension == 3 else [] if solids else faces
@@ -176,6 +178,14 @@ def _read(options: CadOptions, dimension: int) -> tuple[Any, float]:
         raise SceneError("domain.file", found, allowed, "Join what the fluid fills, and leave the rest out.")
     unit = mesher_unit(_size(whole[0]))
     return _scaled(whole[0], 1.0 / unit), options.scale * unit
+
+
+def probe_cad(path: Path, dimension: int) -> None:
+    """Do with a file all that a domain does that may end the process: read it, look at its sides, and mesh them."""
+    shape, unit = _read(CadOptions(file=str(path)), dimension)
+    for side in sides(shape, dimension):
+        (form_of_edge(side, unit) if dimension == 2 else form_of_face(side.surf, unit), side.mass, side.center)
+    _fine_facets(shape, dimension, unit)
 
 
 def _scaled(shape: Any, factor: float) -> Any:

@@ -13,7 +13,9 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.geometry.stl_file import read_stl
 from rigidfluid.core.mesh.meshing import elements
+from rigidfluid.domains.trial import require_survival
 from rigidfluid.errors import SceneError
+from rigidfluid.regular_file import MOST_GEOMETRY, require_regular
 
 FIELD = "domain.file"
 _SIMPLICES = {"vertex": 0, "line": 1, "line3": 1, "triangle": 2, "triangle6": 2, "tetra": 3, "tetra10": 3}
@@ -51,14 +53,16 @@ def read_mesh(path: Path, dimension: int) -> MeshFile:
     file cannot be read, has other cells than simplices, or needs a package that is not there.
     """
     ending = next((ending for ending in _FORMATS if path.name.lower().endswith(ending)), None)
-    if not path.is_file():
-        raise SceneError(FIELD, str(path), "a file that is there", "Check the path.")
+    require_regular(path, FIELD, MOST_GEOMETRY)
     if ending is None:
         remedy = "Write it in one of those; drawn shapes are read by type = 'cad'."
         raise SceneError(FIELD, str(path), f"one of {', '.join(_FORMATS)}", remedy)
     if ending == ".stl":
         return _mesh_of_stl(path)
-    return _read_by_netgen(path, dimension) if ending.startswith(".vol") else _read_by_meshio(path, dimension)
+    if not ending.startswith(".vol"):
+        return _read_by_meshio(path, dimension)
+    require_survival("mesh", path, dimension)
+    return read_by_netgen(path, dimension)
 
 
 def _mesh_of_stl(path: Path) -> MeshFile:
@@ -67,7 +71,8 @@ def _mesh_of_stl(path: Path) -> MeshFile:
     return MeshFile(facets.points, Cells(facets.vertices, numbers, {}), _no_cells(3))
 
 
-def _read_by_netgen(path: Path, dimension: int) -> MeshFile:
+def read_by_netgen(path: Path, dimension: int) -> MeshFile:
+    """Read a mesh of Netgen; a damaged one may end the process. Raises SceneError."""
     from netgen import meshing
 
     mesh, verbosity = meshing.Mesh(), meshing.SetMessageImportance(0)
@@ -152,5 +157,5 @@ def _no_cells(dimension: int) -> Cells:
 
 
 def _unreadable(path: Path, error: BaseException) -> SceneError:
-    found = f"{path}, which cannot be read ({type(error).__name__}: {str(error).strip()})"
+    found = f"{path}, which cannot be read ({type(error).__name__})"
     return SceneError(FIELD, found, "a whole mesh file of that kind", "Write it anew.")

@@ -9,6 +9,7 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.facets import Facets
 from rigidfluid.errors import SceneError
+from rigidfluid.regular_file import MOST_GEOMETRY, require_regular
 
 _HEAD = 84
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -21,6 +22,7 @@ def read_stl(path: Path, key: str) -> Facets:
     A file with as many bytes as its number of triangles says is binary, all others are text. Raises SceneError, which
     names the scene's ``key``, if the file cannot be read or has no triangles.
     """
+    require_regular(path, key, MOST_GEOMETRY)
     try:
         content = path.read_bytes()
     except OSError as error:

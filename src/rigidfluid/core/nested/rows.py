@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 
 from rigidfluid.core.scene.validation import refuse_out_of_proportion
 from rigidfluid.errors import SceneError
+from rigidfluid.regular_file import MOST_TEXT, require_regular
 
 Rows = tuple[tuple[float, float], ...]
 
@@ -32,12 +35,16 @@ def read_rows(file: str, at: str) -> Rows:
     """Read a text file with a time and a value in each row, a comma between; lines that start with # are skipped.
     Raises SceneError if it cannot be read, is too long, or a row is not two finite numbers."""
     allowed, remedy = "a file of lines 'time, value'", "Correct it; start lines of words with #."
+    require_regular(Path(file), at, MOST_TEXT)
     try:
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", "loadtxt: input contained no data")  # it is refused below
-            rows = np.loadtxt(file, delimiter=",", ndmin=2, encoding="utf-8-sig")
-    except (OSError, ValueError) as error:
-        raise SceneError(at, f"{file!r}: {getattr(error, 'strerror', None) or error}", allowed, remedy) from None
+            with Path(file).open(encoding="utf-8-sig") as lines:
+                rows = np.loadtxt(lines, delimiter=",", ndmin=2)
+    except (OSError, ValueError) as error:  # its words may quote the file
+        row = re.search(r"at row (\d+)", str(error))
+        place = f"no numbers in row {int(row[1]) + 1}" if row else f"no rows of numbers ({type(error).__name__})"
+        raise SceneError(at, f"{file!r} with {place}", allowed, remedy) from None
     if not rows.size:
         raise SceneError(at, f"{file!r} without rows", allowed, remedy)
     if rows.shape[1] != 2 or not np.isfinite(rows).all():

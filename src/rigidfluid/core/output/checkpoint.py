@@ -1,4 +1,4 @@
-"""A state on disk: every array of the record tree, by its path, in one HDF5 file that is replaced as a whole.
+"""A state on disk: every array of the record tree, by its path, in one sealed HDF5 file that is replaced as a whole.
 
 Each rank has a file of its own. The ranks themselves are not stored: who reads a part of a mesh names them.
 """
@@ -22,9 +22,11 @@ from rigidfluid.core.model.ranks import ALONE, Ranks
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.types import FluidState
 from rigidfluid.core.output.extremes import Extremes
+from rigidfluid.core.output.sealed_file import BLOCK, is_intact, is_sealed, seal
+from rigidfluid.core.output.tables import Prefix
 from rigidfluid.errors import OutputError
 
-FORMAT = 9
+FORMAT = 10
 """Number of the checkpoint's format, raised with each change of the records, the backend's memory or the tables'
 columns; files of other formats are refused."""
 
@@ -32,14 +34,15 @@ columns; files of other formats are refused."""
 @dataclass(frozen=True, slots=True)
 class Checkpoint:
     """Data with which a rank goes on with a run: its ``state`` and the backend's ``memory``, the ``scene`` as JSON, the
-    ``times`` of its outputs, the ``lengths`` of the tables in bytes, what the run has cost, its ``extremes``, and how
-    many ``ranks`` have such."""
+    digests of the ``files`` that it names, the ``times`` of its outputs, the ``tables`` as far as they were written,
+    what the run has cost, its ``extremes``, and how many ``ranks`` have such."""
 
     state: State
     memory: FluidState
     scene: str
+    files: str
     times: tuple[float, ...]
-    lengths: Mapping[str, int]
+    tables: Mapping[str, Prefix]
     seconds: Mapping[str, float]
     rejected: int
     unsettled: int
@@ -58,9 +61,10 @@ def stage_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
     The file is made in memory: on a full disk HDF5's own writing does not fail, it crashes.
     """
     image = io.BytesIO()
-    with h5py.File(image, "w") as file:
+    with h5py.File(image, "w", userblock_size=BLOCK) as file:
         file.attrs["format"] = FORMAT
         _store(file, checkpoint)
+    seal(image)
     _staged(path).write_bytes(image.getbuffer())
 
 
@@ -88,34 +92,26 @@ def read_origin(path: Path) -> tuple[int, int]:
         return int(file["state"]["tick"][()]), int(file["ranks"][()])
 
 
-@contextmanager
-def _opened(path: Path) -> Iterator[h5py.File]:
-    if not path.is_file():
-        raise OutputError(str(path), "no such file", "the checkpoint of an earlier run", "Run without --resume.")
-    try:
-        with h5py.File(path, "r") as file:
-            _refuse_other_formats(path, file)
-            yield file
-    except (OSError, AttributeError, TypeError, KeyError) as error:
-        raise OutputError(
-            str(path), f"no readable checkpoint ({error})", "one that this version wrote", "Run without --resume."
-        ) from error
-
-
 def read_scene(path: Path) -> dict[str, Any]:
     """The scene of the run that a checkpoint is of; raises OutputError where there is none or it cannot be read."""
-    try:
-        with h5py.File(path, "r") as file:
-            return dict(json.loads(file["scene"].asstr()[()]))
-    except (OSError, KeyError, AttributeError, TypeError, ValueError) as error:
-        allowed = "the checkpoint of a run"
-        raise OutputError(str(path), f"no readable checkpoint ({error})", allowed, "Run the scene again.") from error
+    with _opened(path) as file:
+        return dict(json.loads(file["scene"].asstr()[()]))
 
 
-def _refuse_other_formats(path: Path, file: h5py.File) -> None:
-    found = file.attrs.get("format", 1)
-    if found != FORMAT:
-        raise OutputError(str(path), f"a checkpoint of format {found}", f"format {FORMAT}", "Run without --resume.")
+@contextmanager
+def _opened(path: Path) -> Iterator[h5py.File]:
+    """A checkpoint, of whose bytes each is as it was written."""
+    if not path.is_file():
+        raise OutputError(str(path), "no such file", "the checkpoint of an earlier run", "Run without --resume.")
+    data, remedy = path.read_bytes(), "Run without --resume."
+    if not is_sealed(data):
+        raise OutputError(str(path), "no checkpoint of this version", f"one of format {FORMAT}", remedy)
+    if not is_intact(data):
+        raise OutputError(str(path), "a damaged or edited checkpoint", "one as it was written", remedy)
+    with h5py.File(io.BytesIO(data), "r") as file:
+        if (found := file.attrs["format"]) != FORMAT:
+            raise OutputError(str(path), f"a checkpoint of format {found}", f"format {FORMAT}", remedy)
+        yield file
 
 
 def _staged(path: Path) -> Path:

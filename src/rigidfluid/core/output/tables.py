@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import csv
+import io
 import os
 from array import array
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from sys import intern
 from typing import Any
+from zlib import crc32
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,41 +19,77 @@ from numpy.typing import NDArray
 from rigidfluid.core.output.records import Row
 from rigidfluid.errors import OutputError
 
+_CHUNK = 1 << 20
+"""Bytes that are read at once."""
+
+
+@dataclass(frozen=True, slots=True)
+class Prefix:
+    """The first ``length`` bytes of a file, with their CRC-32."""
+
+    length: int = 0
+    crc: int = 0
+
+    def followed_by(self, data: bytes) -> Prefix:
+        """The prefix that ends behind ``data``."""
+        return Prefix(self.length + len(data), crc32(data, self.crc))
+
+    def begins(self, path: Path) -> bool:
+        """Whether a file begins so."""
+        return not self._found(path)
+
+    def require(self, path: Path) -> None:
+        """Raise OutputError where a file does not begin so."""
+        found = self._found(path)
+        if found:
+            allowed = f"the {self.length} bytes of the checkpoint, as they were written, or more behind them"
+            raise OutputError(str(path), found, allowed, "Restore the file, or run without --resume.")
+
+    def _found(self, path: Path) -> str:
+        """Difference of a file from it in words, empty where there is none."""
+        if not path.is_file():
+            return "no such file"
+        with path.open("rb") as file:
+            present = Prefix()
+            while data := file.read(min(_CHUNK, self.length - present.length)):
+                present = present.followed_by(data)
+        if present.length < self.length:
+            return f"{present.length} bytes"
+        return "" if present == self else f"other content in its first {self.length} bytes"
+
 
 class Table:
     """CSV file that is opened for each append and never held, so that nothing is left open or unwritten.
 
-    ``length`` None starts the file anew with the ``columns`` as header; otherwise what lies behind this many bytes is
-    cut off.
+    ``kept`` None starts the file with the ``columns`` as header; otherwise what lies behind this prefix is cut off.
     """
 
-    def __init__(self, path: Path, columns: Sequence[str], length: int | None) -> None:
+    def __init__(self, path: Path, columns: Sequence[str], kept: Prefix | None) -> None:
         self._path = path
-        if length is None:
-            self._write("w", [columns])
+        self.written = Prefix() if kept is None else kept
+        """Content so far."""
+        if kept is None:
+            path.write_bytes(b"")
+            self.extend([tuple(columns)])
         else:
-            self._cut(length)
+            kept.require(path)
+            os.truncate(path, kept.length)
 
     def extend(self, rows: Sequence[Row]) -> None:
-        """Append rows; numbers are written so that reading gives the same bits back."""
-        if rows:
-            self._write("a", rows)
-
-    @property
-    def length(self) -> int:
-        """Bytes written so far."""
-        return self._path.stat().st_size
-
-    def _cut(self, length: int) -> None:
-        present = self.length if self._path.exists() else 0
-        if present < length:
-            found, allowed = f"{present} bytes", f"the {length} bytes or more of the checkpoint"
-            raise OutputError(str(self._path), found, allowed, "Restore the file, or run without --resume.")
-        os.truncate(self._path, length)
-
-    def _write(self, mode: str, rows: Sequence[Sequence[object]]) -> None:
-        with self._path.open(mode, newline="", encoding="utf-8") as file:
-            csv.writer(file, lineterminator="\n").writerows(rows)
+        """Append rows; numbers are written so that reading gives the same bits back. Raises OutputError where somebody
+        else has written to the file."""
+        if not rows:
+            return
+        text = io.StringIO(newline="")
+        csv.writer(text, lineterminator="\n").writerows(rows)
+        data = text.getvalue().encode()
+        with self._path.open("r+b") as file:
+            present = file.seek(0, os.SEEK_END)
+            if present != self.written.length:
+                found, allowed = f"{present} bytes", f"the {self.written.length} bytes that this run has written"
+                raise OutputError(str(self._path), found, allowed, "Leave it alone during a run; then use --resume.")
+            file.write(data)
+        self.written = self.written.followed_by(data)
 
 
 KINDS: Mapping[str, type[float | int | str]] = {

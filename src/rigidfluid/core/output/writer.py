@@ -23,9 +23,11 @@ from rigidfluid.core.output.checkpoint import (
     read_staged,
     stage_checkpoint,
 )
+from rigidfluid.core.output.disk import replace_text, writing
 from rigidfluid.core.output.records import Records, columns
-from rigidfluid.core.output.run_folder import clear, locked, refuse_foreign
-from rigidfluid.core.output.tables import Table, table_path
+from rigidfluid.core.output.results_folder import clear, take_folder
+from rigidfluid.core.output.run_files import RUN
+from rigidfluid.core.output.tables import Prefix, Table, table_path
 from rigidfluid.core.output.vtu import read_pvd, write_pvd, write_pvtu, write_vtu
 from rigidfluid.errors import OutputError
 
@@ -48,7 +50,7 @@ class Writer:
         ranks: Ranks,
         coordinates: Iterable[str] = COORDINATES,
     ) -> None:
-        self.out, self._ranks = out, ranks
+        self.out, self.closed, self._ranks = out, False, ranks
         self._tables: dict[str, Table] = {}
         self._mark: TextIO | None = None
         self._series: list[str] = []
@@ -58,7 +60,7 @@ class Writer:
             undo.pop_all()
 
     def _start(self, columns_by_table: Mapping[str, Sequence[str]], resumed: Checkpoint | None) -> None:
-        out, lengths = self.out, {} if resumed is None else resumed.lengths
+        out, kept = self.out, {} if resumed is None else resumed.tables
         with self._writing_once(out) as is_mine:
             if is_mine:
                 self._mark = _taken(out, anew=resumed is None)
@@ -67,12 +69,12 @@ class Writer:
             path = table_path(out, name)
             with self._writing_once(path) as is_mine:
                 if is_mine:
-                    self._tables[name] = Table(path, names, lengths.get(name))
+                    self._tables[name] = Table(path, names, kept.get(name))
 
     @property
-    def lengths(self) -> dict[str, int]:
-        """Bytes in each table; the root has them all."""
-        return {name: table.length for name, table in self._tables.items()}
+    def tables(self) -> dict[str, Prefix]:
+        """Content of each table, as far as it is written; the root has them all."""
+        return {name: table.written for name, table in self._tables.items()}
 
     def extend(self, records: Records) -> None:
         """Append the rows of one state."""
@@ -112,10 +114,11 @@ class Writer:
         """Write the summary."""
         with self._writing_once(self.out / SUMMARY) as is_mine:
             if is_mine:
-                (self.out / SUMMARY).write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+                replace_text(self.out / SUMMARY, json.dumps(summary, indent=2) + "\n")
 
     def close(self) -> None:
         """Let other runs write to the folder."""
+        self.closed = True
         if self._mark is not None:
             self._mark.close()
 
@@ -136,12 +139,10 @@ class Writer:
 
 def _taken(out: Path, anew: bool) -> TextIO:
     """The folder's lock; of an earlier run there only what is not to be written ``anew`` is left."""
+    mark = take_folder(out, RUN, anew=anew)
     if anew:
-        refuse_foreign(out)
-    (out / FIELDS).mkdir(parents=True, exist_ok=True)
-    mark = locked(out)
-    if anew:
-        clear(out)
+        clear(out, RUN)
+    (out / FIELDS).mkdir(exist_ok=True)
     return mark
 
 
@@ -210,17 +211,3 @@ def _checkpoints(out: Path) -> list[Path]:
 def _series(out: Path) -> list[str]:
     """The files of fields that a run has listed, from its folder on."""
     return [f"{FIELDS}/{path.name}" for _, path in read_pvd(out / SERIES)] if (out / SERIES).exists() else []
-
-
-@contextmanager
-def writing(path: Path) -> Iterator[None]:
-    """Turn the operating system's refusal into an OutputError that names the file."""
-    try:
-        yield
-    except OSError as error:
-        raise OutputError(
-            str(path),
-            error.strerror or str(error),
-            "a folder that can be written to, on a disk with room",
-            "Choose another --out, or make room and go on with --resume.",
-        ) from error

@@ -35,6 +35,18 @@ def over_time(over: float | None, before: FloatArray, after: FloatArray) -> floa
     return float(over)
 
 
+def time_of(key: str, value: float, least: float = -math.inf) -> float:
+    """A time above ``least``, infinite ones among them; raises SceneError."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        number = math.nan
+    if not number > least:
+        allowed = "a number" if least == -math.inf else f"a time above {least:g}"
+        raise SceneError(key, value, allowed, "Give a time in the scene's unit.")
+    return number
+
+
 def _row(dimension: int, given: dict[str, Sequence[float] | None]) -> FloatArray:
     lengths = dimension, 1 if dimension == 2 else 3
     return np.concatenate([_vector(key, given[key], length) for key, length in zip(given, lengths, strict=True)])

@@ -1,9 +1,12 @@
-"""The checkpoint to resume, by as many processes as wrote it or by another number."""
+"""The checkpoint to resume, of the same scene, by as many processes as wrote it or by another number."""
 
 from __future__ import annotations
 
+import json
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from rigidfluid.core.mesh.distribution import joined, partition, parts_of, shared
 from rigidfluid.core.model.interfaces import FluidBackend
@@ -11,7 +14,63 @@ from rigidfluid.core.model.state import State
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.writer import earlier_parts, earlier_run, ranks_of_run
+from rigidfluid.core.run.clock import Clock
+from rigidfluid.core.scene.earlier import tables_now
+from rigidfluid.core.scene.scene import FluidTable
+from rigidfluid.core.setup.model import Model
+from rigidfluid.core.setup.named_files import file_digests
 from rigidfluid.errors import OutputError
+from rigidfluid.registry import FLUID_BACKEND, Registry
+
+
+def earlier_of(model: Model, out: Path | None, backend: FluidBackend, clock: Clock) -> Checkpoint:
+    """Read the checkpoint to resume; its scene must be this one, but for the end of time and a backend of one format.
+
+    Raises OutputError where it is not, a file that the scene names has changed, or the run is past the clock's end.
+    """
+    if out is None:
+        raise OutputError("resume", "no folder", "the folder of an earlier run", "Name it with --out.")
+    checkpoint = checkpoint_for(backend, out)
+    stored, given = tables_now(json.loads(checkpoint.scene)), dict(model.document)
+    stored["time"]["end"] = given["time"]["end"]
+    if _is_of_another(backend, stored["fluid"]["backend"]):
+        stored["fluid"], given["fluid"] = (_common_keys(tables["fluid"]) for tables in (stored, given))
+        checkpoint = replace(checkpoint, memory={})
+    if stored != given:
+        changed = sorted(table for table in stored.keys() | given.keys() if stored.get(table) != given.get(table))
+        raise OutputError(
+            str(out),
+            f"a run of another scene (other: {', '.join(changed)})",
+            "a run of the same scene; only time.end may differ, and the backend among those of P2–P1 elements",
+            "Give the same scene and the same --set, or run without --resume.",
+        )
+    _refuse_changed_files(checkpoint, model)
+    if checkpoint.state.tick > clock.last_tick:
+        found = f"an end at {clock.end:g}, before the checkpoint's time {clock.time(checkpoint.state.tick):g}"
+        raise OutputError(str(out), found, "a later one", "Move time.end; the tables hold what was before it.")
+    return checkpoint
+
+
+def _refuse_changed_files(checkpoint: Checkpoint, model: Model) -> None:
+    """Raise OutputError where a file that the scene names is not as it was when the checkpoint was written."""
+    before, now = json.loads(checkpoint.files), file_digests(model.document)
+    changed = sorted(name for name in before.keys() & now.keys() if before[name] != now[name])
+    if changed:
+        remedy = "Restore it, or run without --resume."
+        raise OutputError(changed[0], "a file that has changed since the checkpoint", "the same content", remedy)
+
+
+def _is_of_another(backend: FluidBackend, name: str) -> bool:
+    """Whether a backend of this name is another one that writes the same states."""
+    if name == backend.name or backend.state_format is None:
+        return False
+    before = Registry.load().find(FLUID_BACKEND, name)
+    return (before.state_format, before.curved_cells) == (backend.state_format, backend.curved_cells)
+
+
+def _common_keys(fluid: Mapping[str, Any]) -> dict[str, Any]:
+    """Keys of ``[fluid]`` that are the same for all backends, with their values."""
+    return {key: value for key, value in fluid.items() if key in FluidTable.model_fields and key != "backend"}
 
 
 def checkpoint_for(backend: FluidBackend, out: Path) -> Checkpoint:

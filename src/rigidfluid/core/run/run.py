@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from contextlib import closing, suppress
 from dataclasses import dataclass
@@ -12,9 +13,10 @@ from rigidfluid.core.model.foreign import no_exit
 from rigidfluid.core.output.history import History
 from rigidfluid.core.run.process import give_back_memory, one_openblas_thread, remembered_interrupt
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.errors import OutputError, RigidfluidError, SharedInterrupt
+from rigidfluid.core.run.summary import warnings_of
+from rigidfluid.errors import OutputError, RigidfluidError, RunWarning, SharedInterrupt
 
-__all__ = ["Progress", "run"]
+__all__ = ["Progress", "run", "simulate"]
 
 
 def run(
@@ -24,9 +26,8 @@ def run(
     resume: bool = False,
     progress: Callable[[Progress], None] | None = None,
     processes: int | None = None,
-    finished: Callable[[History], None] | None = None,
 ) -> History:
-    """Run a scene or a model to its end.
+    """Run a scene or a model to its end, and warn of what its summary warns of.
 
     Parameters
     ----------
@@ -42,8 +43,6 @@ def run(
     processes : int or None
         How many processes were started to share the run, each calling this; a backend that cannot share it among so
         many is refused. None takes the backend's word.
-    finished : callable or None
-        Called with the results once they are summed up, also where the run then raises what stopped it.
 
     Returns
     -------
@@ -60,10 +59,27 @@ def run(
     StepError
         Where even the shortest step fails, or memory does not suffice; what was computed stays, and can be resumed.
 
-    Any other error, as that of a plug-in, leaves a summary too.
+    Any other error, as that of a plug-in, leaves a summary too. A RunWarning tells of energy created or lost, of meshes
+    that could not be made and of what else throws doubt on the results.
     """
+    history = simulate(case, out, resume=resume, progress=progress, processes=processes)
+    for text in warnings_of(history.summary):
+        warnings.warn(text, RunWarning, stacklevel=2)
+    return history
+
+
+def simulate(
+    case: Case,
+    out: Path | None = None,
+    *,
+    resume: bool = False,
+    progress: Callable[[Progress], None] | None = None,
+    processes: int | None = None,
+    finished: Callable[[History], None] = lambda _: None,
+) -> History:
+    """Run a scene or a model to its end, as `run` does without its warnings; ``finished`` is called with the results
+    once they are summed up, also where the run then raises what stopped it."""
     with one_openblas_thread(), no_exit(), closing(Simulation(case, out, resume, processes)) as simulation:
-        told = finished or (lambda _: None)
         if progress is not None:
             simulation.observe(lambda now: progress(_progress(now)))
         try:
@@ -75,10 +91,10 @@ def run(
             if simulation.alone or isinstance(error, (RigidfluidError, SharedInterrupt)):
                 with suppress(OutputError):  # a full disk has been reported once
                     simulation.finish(status=_status(error))
-                    told(simulation.history)
+                    finished(simulation.history)
             raise
         simulation.finish(status="complete")
-        told(simulation.history)
+        finished(simulation.history)
         simulation.system.backend.forget()  # much memory, which the next run in this process may want
         give_back_memory()
     return simulation.history

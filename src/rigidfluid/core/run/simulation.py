@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -25,23 +24,21 @@ from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import StepCost, count_cells, joint_coordinates, records
 from rigidfluid.core.output.writer import CHECKPOINT, Writer
-from rigidfluid.core.run.caller_input import over_time, twist_row, wrench_row
+from rigidfluid.core.run.caller_input import over_time, time_of, twist_row, wrench_row
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.initial_state import initial_state
 from rigidfluid.core.run.mesh_keys import updater_of
-from rigidfluid.core.run.resumption import checkpoint_for
+from rigidfluid.core.run.resumption import earlier_of
 from rigidfluid.core.run.schedule import Schedule
 from rigidfluid.core.run.stepper import Counts, Stepper
 from rigidfluid.core.run.stopwatch import Stopwatch
 from rigidfluid.core.run.summary import summarise
 from rigidfluid.core.run.velocity_jump import halvings_after, halvings_within, shortened
-from rigidfluid.core.scene.earlier import tables_now
-from rigidfluid.core.scene.scene import FluidTable
 from rigidfluid.core.setup.assemble import assemble
 from rigidfluid.core.setup.model import Model
+from rigidfluid.core.setup.named_files import file_digests
 from rigidfluid.core.setup.prescribed import PrescribedMotion, prescribed_motion
 from rigidfluid.errors import OutputError, SceneError, StepError
-from rigidfluid.registry import FLUID_BACKEND, Registry
 
 Observer = Callable[["Simulation"], None]
 
@@ -67,8 +64,9 @@ class BodyNow:
 
 @dataclass(frozen=True)
 class SavedRun:
-    """A run as `Simulation.save` kept it."""
+    """A run of a ``model`` as `Simulation.save` kept it."""
 
+    model: Model
     state: State
     memory: FluidState
     system: System
@@ -108,8 +106,8 @@ class Simulation:
         system = assemble(model)
         self._ranks = system.backend.ranks
         _refuse_lone_ranks(system.backend, processes)
-        earlier = _earlier(model, out, system.backend) if resume else None
         self.clock = Clock.for_steps(model.time.step, model.time.shortest, model.time.end)
+        earlier = earlier_of(model, out, system.backend, self.clock) if resume else None
         self.watch = Stopwatch()
         self.mesh_updater = updater_of(model.fluid, system, self.clock, self.watch)
         self.stepper = Stepper(system, self.clock, self.mesh_updater, self.watch, model.time.tolerance)
@@ -184,7 +182,10 @@ class Simulation:
         ------
         StepError
             Where even the shortest step fails, memory does not suffice, or the scene's end was reached before.
+        OutputError
+            Where the disk refuses, or the simulation, which writes to a folder, was closed.
         """
+        self._refuse_closed()
         if self.ended:
             remedy = "Move time.end in the scene."
             raise StepError("a step", f"one after the end, {self.time:g}", f"steps until {self.clock.end:g}", remedy)
@@ -198,14 +199,17 @@ class Simulation:
         return self.state
 
     def go(self, until: float = np.inf) -> None:
-        """Step until this time [time], or the scene's end."""
+        """Step until this time [time], or the scene's end; raises SceneError where it is no number."""
+        until = time_of("until", until)
         last = self.clock.last_tick if until >= self.clock.end else self.clock.tick_from(until)
         while self.state.tick < last:
             self.step()
 
     def observe(self, observer: Observer, every: float | None = None) -> None:
         """Call ``observer`` with this simulation after each accepted step, or after those that reach a multiple of
-        ``every`` [time]."""
+        ``every`` [time]; raises SceneError where that is no time above 0."""
+        if every is not None:
+            every = time_of("every", every, least=0.0)
         self._observers.append((Schedule(self.clock, every, self.time), observer))
 
     def prescribe(
@@ -241,7 +245,7 @@ class Simulation:
             step = self.clock.size(0)
             halvings = halvings_within(halvings_after(self.system, self.state, row, twist, step), step, over)
             self.state = shortened(self.state, self.clock, halvings)
-            within = within or self.clock.size(self.stepper.propose(self.state))
+            within = within or self.clock.size(self.stepper.proposed(self.state))
         motion = self._motion().changed(row, twist, self.time, within)
         self.state = replace(self.state, prescription=motion.rows)
         self._follow(motion)
@@ -272,6 +276,7 @@ class Simulation:
     def save(self) -> SavedRun:
         """Keep the run as it is now, in memory; what follows equals what follows `restore` to the last bit."""
         return SavedRun(
+            model=self.model,
             state=self.state,
             memory=self.system.backend.memory(),
             system=self.system,
@@ -282,7 +287,11 @@ class Simulation:
         )
 
     def restore(self, saved: SavedRun) -> None:
-        """Go back to where the run was saved; raises OutputError where its results go to a folder."""
+        """Go back to where the run was saved; raises OutputError where its results go to a folder, SceneError where
+        another model's run was saved."""
+        if saved.model is not self.model and saved.model.document != self.model.document:
+            found, allowed = f"a run of {saved.model.name!r} or of other values", "one of the same scene or model"
+            raise SceneError("restore", found, allowed, "Restore it in a Simulation of its own scene.")
         if self._writer is not None:
             raise OutputError(
                 str(self._writer.out),
@@ -306,9 +315,14 @@ class Simulation:
             self._writer.summary(self.history.summary)
 
     def close(self) -> None:
-        """Let other runs write to the folder; nothing may be written after that."""
+        """Let other runs write to the folder; a simulation that writes takes no step after that."""
         if self._writer is not None:
             self._writer.close()
+
+    def _refuse_closed(self) -> None:
+        if self._writer is not None and self._writer.closed:
+            remedy = "Make another Simulation, with resume=True to go on."
+            raise OutputError(str(self._writer.out), "a step after close()", "steps before it", remedy)
 
     def _begin(self, out: Path | None) -> None:
         self._elapsed_before = self._cpu_before = 0.0
@@ -374,8 +388,9 @@ class Simulation:
             state=self.state,
             memory=memory,
             scene=json.dumps(self.model.document),
+            files=json.dumps(file_digests(self.model.document)),
             times=self._times,
-            lengths=writer.lengths,
+            tables=writer.tables,
             seconds=self.watch.seconds,
             **asdict(self.counts),
             elapsed=self.elapsed,
@@ -444,37 +459,3 @@ def _refuse_lone_ranks(backend: FluidBackend, processes: int | None) -> None:
             "as many processes as the backend shares a run among",
             "Start one process, without mpirun, or choose a backend for several, such as 'dolfinx'.",
         )
-
-
-def _earlier(model: Model, out: Path | None, backend: FluidBackend) -> Checkpoint:
-    """The checkpoint to resume; its scene must be this one, but for the end of time and a backend of one format."""
-    if out is None:
-        raise OutputError("resume", "no folder", "the folder of an earlier run", "Name it with --out.")
-    checkpoint = checkpoint_for(backend, out)
-    stored, given = tables_now(json.loads(checkpoint.scene)), dict(model.document)
-    stored["time"]["end"] = given["time"]["end"]
-    if _is_of_another(backend, stored["fluid"]["backend"]):
-        stored["fluid"], given["fluid"] = (_common_keys(tables["fluid"]) for tables in (stored, given))
-        checkpoint = replace(checkpoint, memory={})
-    if stored != given:
-        changed = sorted(table for table in stored.keys() | given.keys() if stored.get(table) != given.get(table))
-        raise OutputError(
-            str(out),
-            f"a run of another scene (other: {', '.join(changed)})",
-            "a run of the same scene; only time.end may differ, and the backend among those of P2–P1 elements",
-            "Give the same scene and the same --set, or run without --resume.",
-        )
-    return checkpoint
-
-
-def _is_of_another(backend: FluidBackend, name: str) -> bool:
-    """Whether a backend of this name is another one that writes the same states."""
-    if name == backend.name or backend.state_format is None:
-        return False
-    before = Registry.load().find(FLUID_BACKEND, name)
-    return (before.state_format, before.curved_cells) == (backend.state_format, backend.curved_cells)
-
-
-def _common_keys(fluid: Mapping[str, Any]) -> dict[str, Any]:
-    """Keys of ``[fluid]`` that are the same for all backends, with their values."""
-    return {key: value for key, value in fluid.items() if key in FluidTable.model_fields and key != "backend"}

@@ -27,7 +27,7 @@ from rigidfluid.core.run.step import Tools, attempt
 from rigidfluid.core.run.step_controller import StepController
 from rigidfluid.core.run.stopwatch import Stopwatch
 from rigidfluid.core.run.stuck import stuck
-from rigidfluid.errors import StepRejected
+from rigidfluid.errors import StepError, StepRejected
 
 MOST_ATTEMPTS = 4
 """Path and fluid of a step with contacts follow each other so many times at most; two are usual."""
@@ -186,7 +186,7 @@ class Stepper:
     def _first_level(self, state: State) -> tuple[int, BodyStep | None]:
         """The longest step, of those proposed and shorter ones, that changes no gap too fast and resolves its impacts,
         and the way it takes."""
-        level = level_to_corner(self.system, self._clock, state.tick, self.propose(state))
+        level = level_to_corner(self.system, self._clock, state.tick, self.proposed(state))
         level = level_after_impact(state, self._clock, level)
         while level < self._clock.levels:
             try:
@@ -197,6 +197,17 @@ class Stepper:
                 return level, path
             level += 1
         return level, None
+
+    def proposed(self, state: State) -> int:
+        """Level that the step controller gives, which may be the caller's; one beyond the last where no step will do.
+
+        Raises StepError where it is no level.
+        """
+        level = self.propose(state)
+        if not (isinstance(level, int | np.integer) and 0 <= level <= self._clock.levels):
+            allowed = f"a whole number from 0, time.step, to {self._clock.levels - 1}, time.shortest"
+            raise StepError("stepper.propose", level, allowed, "Let it return the number of halvings.")
+        return int(level)
 
     def _changes_gaps_too_fast(self, state: State, pose: Pose) -> bool:
         """Whether the mesh in a gap would be squeezed, or a film opened, by more than a step can follow."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import platform
+from collections.abc import Mapping
 from dataclasses import asdict
 from importlib import metadata
 from typing import TYPE_CHECKING, Any
@@ -160,3 +161,13 @@ def versions() -> dict[str, str]:
         except metadata.PackageNotFoundError:
             continue
     return found
+
+
+def warnings_of(summary: Mapping[str, Any]) -> list[str]:
+    """All that a run warns of at its end, each with its remedy."""
+    told = [*summary["energy"]["warnings"], *(each for each in summary["remarks"] if each["grade"] == "warning")]
+    texts = [f"{each['text']}. {each['remedy']}" for each in told]
+    if count := summary["failed_remeshes"]:
+        latest = summary["latest_failed_remesh"]
+        texts.append(f"a new mesh could not be made {count} times; the one before served on. The latest: {latest}")
+    return texts

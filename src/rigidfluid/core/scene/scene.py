@@ -31,6 +31,7 @@ from rigidfluid.core.scene.vectors import (
     Vector,
 )
 from rigidfluid.errors import SceneError
+from rigidfluid.regular_file import MOST_TEXT, require_regular
 
 PRINTABLE = r"^[^\x00-\x1f\x7f]*$"
 """Pattern of names: no control characters, which would break the tables and plots that names stand in."""
@@ -554,6 +555,7 @@ def read_toml(path: Path, kind: str = "scene") -> dict[str, Any]:
 
     The path under a key ``file`` is relative to the file it stands in.
     """
+    require_regular(path, str(path), MOST_TEXT)
     try:
         return _resolve_files(tomllib.loads(path.read_text(encoding="utf-8")), path.resolve().parent)
     except OSError as error:

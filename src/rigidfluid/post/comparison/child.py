@@ -7,7 +7,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from rigidfluid.core.output.writer import writing
+from rigidfluid.core.output.disk import writing
 from rigidfluid.post.python_process import environment, failure, python
 
 _POLL = 1.0

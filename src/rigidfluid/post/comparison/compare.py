@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import re
 import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
-from rigidfluid.core.output.writer import writing
+from rigidfluid.core.output.disk import writing
+from rigidfluid.core.output.results_folder import Product, take_folder
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.post.comparison.comparison import Comparison
 from rigidfluid.post.comparison.differences import Pair, pair
@@ -38,12 +40,20 @@ def compare(
     scenes = backend_scenes(path, backends, overrides)
     name = scenes[backends[0]].name
     out = Path("out") / f"{name}_compare" if out is None else Path(out)
-    runs = _runs(scenes, out, fresh, progress)
-    comparison = Comparison(_command(path, backends, overrides), runs, _pairs(runs))
-    with writing(out / TABLE):
-        text = json.dumps(comparison.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
-        (out / TABLE).write_text(text + "\n", encoding="utf-8")
-    return comparison, [out / TABLE, *write_page(comparison, name, out)]
+    with take_folder(out, product_of(backends), anew=True):
+        runs = _runs(scenes, out, fresh, progress)
+        comparison = Comparison(_command(path, backends, overrides), runs, _pairs(runs))
+        with writing(out / TABLE):
+            text = json.dumps(comparison.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
+            (out / TABLE).write_text(text + "\n", encoding="utf-8")
+        return comparison, [out / TABLE, *write_page(comparison, name, out)]
+
+
+def product_of(backends: Sequence[str]) -> Product:
+    """Files of a comparison, beside the runs in folders of their own."""
+    names = "|".join(map(re.escape, backends))
+    own = r"comparison\.(json|html)|(differences|body_\d+)\.(png|svg)"
+    return Product("comparison", rf"({names})\.(toml|log)|{own}")
 
 
 def _runs(scenes: dict[str, Scene], out: Path, fresh: bool, progress: Observer | None) -> tuple[Run, ...]:

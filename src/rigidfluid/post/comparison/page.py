@@ -8,7 +8,7 @@ from pathlib import Path
 
 import matplotlib
 
-from rigidfluid.core.output.writer import writing
+from rigidfluid.core.output.disk import writing
 from rigidfluid.core.scene.scene_text import scene_text
 from rigidfluid.post.comparison.comparison import Comparison
 from rigidfluid.post.comparison.figures import body_plot, difference_plot, most_different

@@ -9,7 +9,9 @@ from os import SEEK_END
 from pathlib import Path
 
 from rigidfluid.core.model.ranks import ALONE
-from rigidfluid.core.output.writer import earlier_run, writing
+from rigidfluid.core.output.disk import writing
+from rigidfluid.core.output.tables import table_path
+from rigidfluid.core.output.writer import earlier_run
 from rigidfluid.core.scene.earlier import tables_now
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.scene.scene_text import scene_text
@@ -74,8 +76,7 @@ def _can_resume(scene: Scene, folder: Path) -> bool:
         checkpoint = earlier_run(folder, ALONE)
     except OutputError:
         return False
-    tables = {folder / f"{name}.csv": length for name, length in checkpoint.lengths.items()}
-    whole = all(table.is_file() and table.stat().st_size >= length for table, length in tables.items())
+    whole = all(table.begins(table_path(folder, name)) for name, table in checkpoint.tables.items())
     return whole and bool(tables_now(json.loads(checkpoint.scene)) == scene.to_dict())
 
 

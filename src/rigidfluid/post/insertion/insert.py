@@ -12,13 +12,18 @@ from rigidfluid.core.case.scene_model import Case, model_of
 from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
 from rigidfluid.core.mesh.remesh import inserted_mesh, remesh
 from rigidfluid.core.mesh.size_interface import with_fields_at_rest
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import Mesh
+from rigidfluid.core.output.disk import replace_text, writing
 from rigidfluid.core.output.mesh_files import write_mesh_vtu, write_msh
-from rigidfluid.core.output.writer import writing
+from rigidfluid.core.output.results_folder import Product, take_folder
 from rigidfluid.core.run.mesh_keys import inserter_of, sizes_of
 from rigidfluid.core.setup.assemble import assemble
 from rigidfluid.errors import SceneError
 from rigidfluid.post.insertion.figures import Figures, measured
 from rigidfluid.post.insertion.page import write_page
+
+INSERTION = Product("insertion", r"mesh\.(vtu|msh|png)|quality\.png|insertion\.(json|json\.part|html)")
 
 _WAYS = {
     "cad": "meshing the domain less the bodies",
@@ -49,23 +54,28 @@ def insert(
         around = fluid_domain_at(system, system.pose)
         sizes = with_fields_at_rest(sizes_of(table, system.domain), model.fluid.size_fields, around)
         way = inserter.chosen(around.bodies, around.domain)
-    with _timed(seconds, "insertion"):
-        progress(_WAYS[way])
-        mesh = inserted_mesh(around, sizes, inserter)
-    with _timed(seconds, "grading"):
-        progress("grading the cells")
-        mesh = remesh(mesh, around, sizes)
-    figures = measured(model.name, way, mesh, system, seconds)
-    progress("writing mesh and report")
     out = Path("out") / f"{model.name}_mesh" if out is None else Path(out)
+    with take_folder(out, INSERTION, anew=True):
+        with _timed(seconds, "insertion"):
+            progress(_WAYS[way])
+            mesh = inserted_mesh(around, sizes, inserter)
+        with _timed(seconds, "grading"):
+            progress("grading the cells")
+            mesh = remesh(mesh, around, sizes)
+        figures = measured(model.name, way, mesh, system, seconds)
+        progress("writing mesh and report")
+        return figures, _written(figures, mesh, system, out)
+
+
+def _written(figures: Figures, mesh: Mesh, system: System, out: Path) -> list[Path]:
+    """Files of the mesh, its figures and its page, once they are written."""
     with writing(out):
-        out.mkdir(parents=True, exist_ok=True)
         files = [out / name for name in ("mesh.vtu", "mesh.msh", "insertion.json")]
         write_mesh_vtu(files[0], mesh, system.surfaces)
         write_msh(files[1], mesh, system.surfaces)
         text = json.dumps(figures.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
-        files[2].write_text(text + "\n", encoding="utf-8")
-        return figures, [*files, *write_page(figures, mesh, system, out)]
+        replace_text(files[2], text + "\n")
+        return [*files, *write_page(figures, mesh, system, out)]
 
 
 @contextmanager

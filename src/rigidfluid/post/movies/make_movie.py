@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.output.writer import writing
+from rigidfluid.core.output.disk import writing
 from rigidfluid.core.setup.model import Model
 from rigidfluid.errors import OutputError
 from rigidfluid.post.movies.picture import draw_bodies, flow_image, ground, paint_flow

@@ -8,7 +8,9 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
-from rigidfluid.core.output.writer import writing
+from rigidfluid.core.output.disk import writing
+from rigidfluid.core.output.results_folder import refuse_links
+from rigidfluid.core.output.run_files import RUN
 from rigidfluid.core.setup.model import Model
 from rigidfluid.post.reports.coefficient_plot import coefficient_caption, coefficient_plot
 from rigidfluid.post.reports.coefficients import Figures, figures, reference
@@ -55,6 +57,7 @@ def report(out: Path, plane: PlaneName = "motion", follow: str | None = None, mo
     """
     out = Path(out)
     results = read_results(out, model=model)
+    refuse_links(out, RUN)
     seen = view_plane(results, plane)
     body = None if follow is None else results.number_of(follow)
     with matplotlib.rc_context(STYLE), writing(out / FOLDER):

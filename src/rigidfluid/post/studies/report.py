@@ -8,7 +8,7 @@ from pathlib import Path
 
 import matplotlib
 
-from rigidfluid.core.output.writer import writing
+from rigidfluid.core.output.disk import writing
 from rigidfluid.core.run.summary import versions
 from rigidfluid.post.reports.html import document, grid, picture, table
 from rigidfluid.post.reports.style import STYLE, save

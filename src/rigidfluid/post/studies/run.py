@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from rigidfluid.core.output.writer import writing
+from rigidfluid.core.output.results_folder import Product, take_folder
 from rigidfluid.errors import RigidfluidError
 from rigidfluid.post.progress import Observer, begin_run
 from rigidfluid.post.studies.kernel_subject import KernelSubject
@@ -19,6 +19,8 @@ from rigidfluid.post.studies.table import read_rows, write_rows
 
 TABLE = "study.csv"
 
+STUDY = Product("study", r"study\.(csv|part|html|png|svg)")
+
 
 def run_study(
     study: Study, out: Path, *, fresh: bool = False, progress: Observer | None = None
@@ -29,13 +31,12 @@ def run_study(
     OutputError if the disk refuses or the table cannot be read.
     """
     subject: Subject = SceneSubject(study) if study.scene is not None else KernelSubject(study)
-    results = _results(study, subject, out, fresh, progress)
-    return results, [out / TABLE, *write_report(results, out)]
+    with take_folder(out, STUDY, anew=True):
+        results = _results(study, subject, out, fresh, progress)
+        return results, [out / TABLE, *write_report(results, out)]
 
 
 def _results(study: Study, subject: Subject, out: Path, fresh: bool, progress: Observer | None) -> Results:
-    with writing(out):
-        out.mkdir(parents=True, exist_ok=True)
     distinct = {fingerprint(subject.identity(settings)): subject.read(settings) for settings in study.settings()}
     prints, plan = list(distinct), list(distinct.values())
     rows = {} if fresh else read_rows(out / TABLE)

@@ -8,7 +8,7 @@ from copy import deepcopy
 from typing import Any
 
 from rigidfluid.core.case.load import scene_from_dict
-from rigidfluid.core.run.run import run
+from rigidfluid.core.run.run import simulate
 from rigidfluid.core.scene.overrides import assign
 from rigidfluid.core.scene.scene import Scene, read_toml
 from rigidfluid.post.studies.figure import check_figure, read_figure
@@ -47,7 +47,7 @@ class SceneSubject:
         """One run from start to end; the time of its set-up but not of the checks of the scene is in the seconds."""
         scene = self._scene(settings)
         self._warm_up(scene)
-        history = run(scene, progress=lambda now: progress(now.time / now.end))
+        history = simulate(scene, progress=lambda now: progress(now.time / now.end))
         summary = history.summary
         figure = read_figure(self._figure, history)
         return Outcome(figure, summary[f"{self._clock}_time"], summary["unknowns"], summary["steps"])
@@ -64,7 +64,7 @@ class SceneSubject:
     def _warm_up(self, scene: Scene) -> None:
         """One step that is not measured, so that no backend's first run pays for imports and compiled kernels."""
         if scene.fluid.backend not in self._warm:
-            run(scene.model_copy(update={"time": scene.time.model_copy(update={"end": scene.time.step})}))
+            simulate(scene.model_copy(update={"time": scene.time.model_copy(update={"end": scene.time.step})}))
             self._warm.add(scene.fluid.backend)
 
 

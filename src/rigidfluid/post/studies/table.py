@@ -6,7 +6,7 @@ import csv
 from collections.abc import Mapping
 from pathlib import Path
 
-from rigidfluid.core.output.writer import writing
+from rigidfluid.core.output.disk import writing
 from rigidfluid.errors import OutputError
 from rigidfluid.post.studies.results import Results
 from rigidfluid.post.studies.rows import FAILED, Row, cells

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -14,6 +15,7 @@ import rigidfluid
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.output.energy_account import NOTICEABLE, STABILISED
 from rigidfluid.core.scene.scene import Scene
+from rigidfluid.errors import RunWarning
 from rigidfluid.forces.normal import NormalLaw
 from rigidfluid.taylor_hood.backend import TaylorHoodBackend
 
@@ -134,3 +136,18 @@ def test_a_law_whose_energy_is_not_its_forces_is_told(monkeypatch: pytest.Monkey
     error, told = account(thrown({}))
     assert error > 1.0
     assert "at impacts" in told[0]
+
+
+def test_a_run_in_python_warns_as_the_command_does() -> None:
+    """Once for each text of the summary; a right scene is silent."""
+    pair = PAIRS[next(iter(PAIRS))]
+    with pytest.warns(RunWarning) as seen:
+        history = rigidfluid.run(pair.scene(pair.wrong))
+    texts = [str(warning.message) for warning in seen if warning.category is RunWarning]
+    assert len(texts) == len(history.summary["energy"]["warnings"]) + sum(
+        remark["grade"] == "warning" for remark in history.summary["remarks"]
+    )
+    assert any(pair.told in text for text in texts)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        rigidfluid.run(thrown({}))

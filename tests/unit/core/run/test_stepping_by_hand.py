@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -143,3 +144,43 @@ def test_driven_bodies_are_where_their_motion_says(wet: bool) -> None:
 
 def at(time: float) -> list[float]:
     return [0.7 + 0.1 * np.sin(5.0 * np.pi * time), 0.5]
+
+
+def test_a_closed_run_writes_no_more(tmp_path: Path) -> None:
+    first = Simulation(scene(BALL, wet=False), tmp_path)
+    first.step()
+    first.close()
+    second = Simulation(scene(BALL, wet=False), tmp_path)
+    with pytest.raises(OutputError, match=r"found a step after close\(\)"):
+        first.step()
+    second.step()
+    assert len(second.history.bodies["time"]) == 2
+    second.close()
+
+
+def test_another_scene_s_save_is_refused() -> None:
+    simulation, other = Simulation(scene(BALL, wet=False)), Simulation(scene(BALL, PADDLE, wet=False))
+    with pytest.raises(SceneError, match=r"restore: found a run of"):
+        simulation.restore(other.save())
+    simulation.restore(Simulation(scene(BALL, wet=False)).save())
+
+
+@pytest.mark.parametrize("every", [0, -1.0, float("nan"), "x", [1.0]])
+def test_observers_are_called_after_a_time_above_zero(every: Any) -> None:
+    simulation = Simulation(scene(BALL, wet=False))
+    with pytest.raises(SceneError, match=r"every: found .*; allowed is a time above 0"):
+        simulation.observe(lambda _: None, every)
+
+
+@pytest.mark.parametrize("until", [float("nan"), "x", None])
+def test_a_run_goes_until_a_time_alone(until: Any) -> None:
+    with pytest.raises(SceneError, match=r"until: found .*; allowed is a number"):
+        Simulation(scene(BALL, wet=False)).go(until)
+
+
+@pytest.mark.parametrize("level", [-1, 10**6, 0.5, float("nan"), None])
+def test_a_controller_gives_levels_alone(level: Any) -> None:
+    simulation = Simulation(scene(BALL, wet=False))
+    simulation.stepper.propose = lambda _: level
+    with pytest.raises(StepError, match=r"stepper.propose: found .*; allowed is a whole number from 0"):
+        simulation.step()

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import copy
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-import h5py
 import jsonschema
 import pytest
 from pydantic import BaseModel, ConfigDict, Field
@@ -15,6 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field
 import rigidfluid
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.schema import json_schema
+from rigidfluid.core.output.checkpoint import adopt_checkpoint, read_checkpoint, stage_checkpoint
 from rigidfluid.core.output.writer import CHECKPOINT
 from rigidfluid.core.scene.earlier import tables_now
 from rigidfluid.core.scene.validation import read_table
@@ -114,10 +115,10 @@ def test_scenes_of_earlier_runs_are_the_same_scenes() -> None:
 def test_runs_from_before_go_on(tmp_path: Path) -> None:
     scene = scene_from_dict(tables(INLET, OUTLET))
     rigidfluid.run(scene_from_dict(tables(INLET, OUTLET, time={"end": 0.1, "step": 0.1})), tmp_path)
-    with h5py.File(tmp_path / CHECKPOINT, "r+") as file:
-        written = json.loads(file["scene"].asstr()[()])
-        del file["scene"]
-        file["scene"] = json.dumps(stored(scene_from_dict(written)))
+    checkpoint = read_checkpoint(tmp_path / CHECKPOINT)
+    written = stored(scene_from_dict(json.loads(checkpoint.scene)))
+    stage_checkpoint(tmp_path / CHECKPOINT, replace(checkpoint, scene=json.dumps(written)))
+    adopt_checkpoint(tmp_path / CHECKPOINT)
     assert rigidfluid.run(scene, tmp_path, resume=True).bodies["time"][-1] == pytest.approx(0.2)
 
 

@@ -22,7 +22,7 @@ from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.output.mesh_files import write_mesh_vtu, write_msh
 from rigidfluid.errors import MeshError, SceneError
-from rigidfluid.post.insertion import insert
+from rigidfluid.post.insertion.insert import INSERTION, insert
 from rigidfluid.post.reports.slice import WHOLE, Slice, cut_faces
 
 NAMES = ["ball", "egg", *"abcdef"]
@@ -118,7 +118,7 @@ def test_a_vtu_file_has_cells_facets_and_names(tmp_path: Path, dimension: int) -
 def test_a_report_counts_what_was_kept(tmp_path: Path) -> None:
     told: list[str] = []
     figures, written = insert(scene_from_dict(scene()), tmp_path, told.append)
-    assert {path.name for path in written} == {path.name for path in tmp_path.iterdir()}
+    assert {path.name for path in written} | {INSERTION.mark} == {path.name for path in tmp_path.iterdir()}
     assert json.loads((tmp_path / "insertion.json").read_text("utf-8"))["cells"] == figures.cells
     assert [told[0], told[-1]] == ["checking the scene", "writing mesh and report"]
     assert figures.inserter == "fill"

@@ -18,6 +18,7 @@ from rigidfluid.cli import app
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import columns
+from rigidfluid.core.output.results_folder import take_folder
 from rigidfluid.core.run.summary import FIGURES
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.errors import OutputError, SceneError
@@ -30,6 +31,7 @@ from rigidfluid.post.studies.model import ErrorTable, FigureTable, Settings, Stu
 from rigidfluid.post.studies.plot import error_plot
 from rigidfluid.post.studies.results import Results, most_expensive, pareto_front
 from rigidfluid.post.studies.rows import short_text
+from rigidfluid.post.studies.run import STUDY as FILES
 from rigidfluid.post.studies.scene_subject import SceneSubject
 from rigidfluid.post.studies.subject import Outcome
 from rigidfluid.post.studies.table import read_rows
@@ -357,6 +359,7 @@ def test_missing_study_file(tmp_path: Path) -> None:
 
 
 def test_a_table_that_is_none(write: Write, tmp_path: Path) -> None:
+    take_folder(tmp_path, FILES, anew=True).close()
     (tmp_path / "study.csv").write_text("identity,status\n1234,complete\n")
     with pytest.raises(OutputError, match=r"study\.csv.*Use --fresh"):
         run_study(load_study(write()), tmp_path)

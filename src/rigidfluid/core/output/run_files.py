@@ -1,0 +1,56 @@
+"""The files of a run, of its report and of its movie: the one list of what is replaced in a folder."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rigidfluid.core.output.results_folder import Product
+
+PICTURES = (
+    *("speed_field", "streamlines", "vorticity", "pressure", "whole_mesh", "mesh", "smallest_gap", "space", "position"),
+    *("mechanisms", "speed", "gap", "rotation", "torque", "force", "coefficients", "contacts", "joints", "energy"),
+    "step",
+)
+"""Names of the pictures in the report of a run, each a PNG or SVG file."""
+
+_TABLES = {
+    "bodies": "a row per body, components of mechanisms among them, and a row per mechanism",
+    "contacts": "a row per contact within the longest range of the laws",
+    "joints": "a row per joint, and per body that is held or on springs",
+    "energy": "the energy balance",
+    "steps": "size, error with `time.tolerance`, unknowns, new meshes",
+    "probes": "the fluid at the points of `output.probes`",
+}
+
+
+
+@dataclass(frozen=True)
+class Files:
+    """Files of one purpose: ``shown`` as documentation lists them, a ``pattern`` of their paths in the folder, when
+    they are ``written`` and their ``content``."""
+
+    shown: str
+    pattern: str
+    written: str
+    content: str
+
+
+FILES = (
+    *(Files(f"`{name}.csv`", rf"{name}\.csv", "each step", content) for name, content in _TABLES.items()),
+    Files(
+        "`fields.pvd`, `fields/*.vtu`",
+        r"fields\.pvd|fields/\d{6,}(\.\d+)?\.p?vtu",
+        "each `output.every`",
+        "velocity and pressure; not without a fluid",
+    ),
+    Files("`state.h5`", r"state(\.\d+)?\.h5(\.part)?", "each `output.every`", "checkpoint for `--resume`"),
+    Files("`summary.json`", r"summary\.json(\.part)?", "at the end", "the figures that matter, and what they cost"),
+    Files(
+        "`report.html`, `report/`",
+        rf"report\.html|report/({'|'.join(PICTURES)})\.(png|svg)",
+        "by `rigidfluid report DIR`",
+        "plots and one page that holds them all",
+    ),
+)
+
+RUN = Product("run", "|".join(files.pattern for files in FILES), subfolders=("fields", "report"))

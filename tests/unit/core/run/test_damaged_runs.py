@@ -1,0 +1,157 @@
+"""A run goes on from what was written, or is refused by the name of the file that is not as it was."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from dry_scenes import ball, dry_scene
+
+import rigidfluid
+from rigidfluid.core.output.sealed_file import BLOCK
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.errors import OutputError
+
+SEED = 20261125
+
+
+def scene(end: float = 0.04) -> Scene:
+    """A ball that flies, with a checkpoint at each step."""
+    flying = dry_scene({}, ball([0.5, 0.5], [0.1, 0.0]), end=end, step=0.01).to_dict()
+    return rigidfluid.scene_from_dict(flying | {"output": {"every": 0.01}})
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    rigidfluid.run(scene(), tmp_path)
+    return tmp_path
+
+
+def refuse_to_resume(folder: Path, name: str, found: str) -> None:
+    """A resumption names the file and what was found there, and writes nothing."""
+    before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    with pytest.raises(OutputError, match=rf"{name}: found .*{found}"):
+        rigidfluid.run(scene(0.08), folder, resume=True)
+    after = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    assert {path: data for path, data in after.items() if path.name != "run.lock"} == {
+        path: data for path, data in before.items() if path.name != "run.lock"
+    }
+
+
+def test_any_bit_of_a_checkpoint_that_has_changed_is_seen(folder: Path) -> None:
+    path, random = folder / "state.h5", np.random.default_rng(SEED)
+    whole = path.read_bytes()
+    for place in random.integers(0, 8 * len(whole), 200):
+        damaged = bytearray(whole)
+        damaged[place // 8] ^= 1 << (place % 8)
+        path.write_bytes(damaged)
+        with pytest.raises(OutputError, match=r"state.h5: found (a damaged|no checkpoint)"):
+            rigidfluid.run(scene(0.08), folder, resume=True)
+    path.write_bytes(whole)
+    assert rigidfluid.run(scene(0.08), folder, resume=True).bodies["time"][-1] == pytest.approx(0.08)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.01, 0.5, 0.999])
+def test_a_checkpoint_that_is_cut_off(folder: Path, share: float) -> None:
+    path = folder / "state.h5"
+    whole = path.read_bytes()
+    path.write_bytes(whole[: int(share * len(whole))])
+    refuse_to_resume(folder, "state.h5", "checkpoint")
+
+
+def move_faster(file: h5py.File) -> None:
+    file["state"]["twist"]["velocity"][...] = 0.5
+
+
+def forget_a_past(file: h5py.File) -> None:
+    del file["state"]["past"]
+
+
+def link_outwards(file: h5py.File) -> None:
+    del file["times"]
+    file["times"] = h5py.ExternalLink("elsewhere.h5", "times")
+
+
+def call_it_another_format(file: h5py.File) -> None:
+    file.attrs["format"] = 1
+
+
+@pytest.mark.parametrize("edit", [move_faster, forget_a_past, link_outwards, call_it_another_format])
+def test_an_edited_checkpoint(folder: Path, edit: Callable[[h5py.File], None]) -> None:
+    with h5py.File(folder / "state.h5", "r+") as file:
+        edit(file)
+    refuse_to_resume(folder, "state.h5", "a damaged or edited checkpoint")
+
+
+def test_a_checkpoint_of_a_version_without_digests(folder: Path) -> None:
+    path = folder / "state.h5"
+    path.write_bytes(path.read_bytes()[BLOCK:])
+    refuse_to_resume(folder, "state.h5", "no checkpoint of this version")
+
+
+@pytest.mark.parametrize("name", ["bodies.csv", "contacts.csv", "joints.csv", "energy.csv", "steps.csv", "probes.csv"])
+def test_a_table_that_is_other_than_the_checkpoint_says(folder: Path, name: str) -> None:
+    path = folder / name
+    text = path.read_bytes()
+    path.write_bytes(text[:-1])
+    refuse_to_resume(folder, name, f"{len(text) - 1} bytes")
+    path.write_bytes(bytes([text[0] ^ 1]) + text[1:])
+    refuse_to_resume(folder, name, "other content")
+    path.unlink()
+    refuse_to_resume(folder, name, "no such file")
+
+
+def test_lines_behind_the_checkpoint_are_cut_off(folder: Path) -> None:
+    with (folder / "bodies.csv").open("a") as file:
+        file.write("a line of a run that was killed")
+    resumed, whole = rigidfluid.run(scene(0.08), folder, resume=True), rigidfluid.run(scene(0.08))
+    np.testing.assert_array_equal(resumed.bodies["x"], whole.bodies["x"])
+
+
+@pytest.mark.parametrize("change", [Path.unlink, lambda path: path.write_text("time\n")])
+def test_a_table_that_changes_during_a_run(tmp_path: Path, change: Callable[[Path], object]) -> None:
+    changed: list[object] = []
+
+    def meddle(_: object) -> None:
+        if not changed:
+            changed.append(change(tmp_path / "bodies.csv"))
+
+    with pytest.raises(OutputError, match=r"bodies.csv: found"):
+        rigidfluid.run(scene(), tmp_path, progress=meddle)
+    assert json.loads((tmp_path / "summary.json").read_text())["status"].startswith("stopped")
+
+
+def test_an_end_before_the_checkpoint(folder: Path) -> None:
+    with pytest.raises(OutputError, match=r"found an end at 0.02, before the checkpoint's time 0.04"):
+        rigidfluid.run(scene(0.02), folder, resume=True)
+    assert rigidfluid.run(scene(), folder, resume=True).summary["status"] == "complete"
+
+
+SOLID = """solid tetrahedron
+facet normal 0 0 -1\nouter loop\nvertex 0 0 0\nvertex 0 1 0\nvertex 1 0 0\nendloop\nendfacet
+facet normal 0 -1 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 0 1\nendloop\nendfacet
+facet normal -1 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 1\nvertex 0 1 0\nendloop\nendfacet
+facet normal 1 1 1\nouter loop\nvertex 1 0 0\nvertex 0 1 0\nvertex 0 0 1\nendloop\nendfacet
+endsolid tetrahedron
+"""
+
+
+def test_a_file_of_the_scene_that_has_changed(tmp_path: Path) -> None:
+    file, out = tmp_path / "body.stl", tmp_path / "out"
+    file.write_text(SOLID)
+    body = {"type": "stl", "file": str(file), "density": 1.0, "position": [3.0, 3.0, 3.0]}
+
+    def resumed(end: float) -> None:
+        flying = dry_scene({}, body, end=end, step=0.01, upper=[6.0] * 3).to_dict()
+        flying["output"]["every"] = 0.01
+        rigidfluid.run(rigidfluid.scene_from_dict(flying), out, resume=end > 0.01)
+
+    resumed(0.01)
+    resumed(0.02)
+    file.write_text(SOLID.replace("vertex 1 0 0", "vertex 1.01 0 0"))
+    with pytest.raises(OutputError, match=r"body.stl: found a file that has changed since the checkpoint"):
+        resumed(0.03)

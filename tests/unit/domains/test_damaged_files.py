@@ -1,0 +1,113 @@
+"""Files of others that are damaged, without end or too large are refused by name, whatever readers make of them."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import rigidfluid
+from rigidfluid.core.geometry.stl_file import read_stl
+from rigidfluid.core.nested.rows import read_rows
+from rigidfluid.domains import trial
+from rigidfluid.domains.cad import Cad, CadOptions
+from rigidfluid.domains.mesh import MeshDomain, MeshOptions
+from rigidfluid.errors import SceneError
+from rigidfluid.regular_file import MOST_TEXT, require_regular
+
+SECRET = "somebody:*:20228:0:99999:7:::"
+
+
+@pytest.fixture
+def drawn(tmp_path: Path) -> Path:
+    """A cylinder as Open CASCADE writes it."""
+    from netgen import occ
+
+    path = tmp_path / "cylinder.brep"
+    occ.Cylinder(occ.Pnt(0, 0, 0), occ.Z, 1.0, 4.0).WriteBrep(str(path))
+    return path
+
+
+def test_a_drawing_that_ends_its_reader_is_refused(drawn: Path) -> None:
+    """Nine tenths of this file are a segmentation fault."""
+    drawn.write_bytes(drawn.read_bytes()[: int(0.9 * drawn.stat().st_size)])
+    with pytest.raises(SceneError, match=r"domain.file: found .*whose reading ended the process .*Segmentation"):
+        Cad(CadOptions(file=str(drawn), faces={"wall": 1}), 3)
+
+
+def test_a_drawing_that_is_read_for_ever_is_refused(drawn: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """So is half of it."""
+    monkeypatch.setattr(trial, "SECONDS", 10.0)
+    drawn.write_bytes(drawn.read_bytes()[: drawn.stat().st_size // 2])
+    with pytest.raises(SceneError, match=r"domain.file: found .*whose reading took more than 10 seconds"):
+        Cad(CadOptions(file=str(drawn), faces={"wall": 1}), 3)
+
+
+def test_a_whole_drawing_is_tried_once(drawn: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    tried: list[Any] = []
+    run = trial.subprocess.run
+    monkeypatch.setattr(trial.subprocess, "run", lambda *args, **keys: (tried.append(args), run(*args, **keys))[1])
+    for _ in range(2):
+        assert Cad(CadOptions(file=str(drawn), faces={"wall": (1, 2, 3)}), 3).volume == pytest.approx(12.566370614)
+    assert len(tried) == 1
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "mesh3d\ndimension\n3\nsurfaceelements\n1\n 1 1 1 0 3 -5 900 7\nendmesh\n",
+        "mesh3d\ndimension\n3\npoints\n999999999\n 0 0 0\nendmesh\n",
+        "mesh3d\ndimension\n3\npoints\nmany\nendmesh\n",
+    ],
+)
+def test_a_mesh_of_wrong_numbers_is_refused(tmp_path: Path, text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(trial, "SECONDS", 10.0)
+    path = tmp_path / "wrong.vol"
+    path.write_text(text)
+    with pytest.raises(SceneError, match=r"domain.file: found .*wrong.vol"):
+        MeshDomain(MeshOptions(file=str(path)), 3)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are neither pipes nor devices there")
+@pytest.mark.parametrize("name", ["pipe", "/dev/zero", ""])
+def test_only_regular_files_are_read(tmp_path: Path, name: str) -> None:
+    path = tmp_path / name
+    if name == "pipe":
+        os.mkfifo(path)
+    readers = [
+        lambda: read_stl(path, "body.0.file"),
+        lambda: read_rows(str(path), "body.0.prescribed"),
+        lambda: rigidfluid.load_scene(path),
+        lambda: MeshDomain(MeshOptions(file=str(path)), 3),
+        lambda: Cad(CadOptions(file=str(path)), 3),
+    ]
+    for read in readers:
+        with pytest.raises(SceneError, match=r"which is a (pipe or a device|folder); allowed is a regular file"):
+            read()
+
+
+def test_files_of_no_bounded_size_are_refused(tmp_path: Path) -> None:
+    with (tmp_path / "large").open("wb") as file:
+        file.truncate(MOST_TEXT + 1)  # holes take no room
+    with pytest.raises(SceneError, match=r"scene: found .*large of 64 MiB; allowed is at most 64 MiB"):
+        require_regular(tmp_path / "large", "scene", MOST_TEXT)
+
+
+@pytest.mark.parametrize("ending", ["csv", "stl", "toml", "brep", "vol"])
+def test_no_refusal_quotes_a_file(tmp_path: Path, ending: str) -> None:
+    path = tmp_path / f"shadow.{ending}"
+    path.write_text(f"{SECRET}\nvertex {SECRET}\n")
+    readers = {
+        "csv": lambda: read_rows(str(path), "body.0.prescribed"),
+        "stl": lambda: read_stl(path, "body.0.file"),
+        "toml": lambda: rigidfluid.load_scene(path),
+        "brep": lambda: Cad(CadOptions(file=str(path)), 3),
+        "vol": lambda: MeshDomain(MeshOptions(file=str(path)), 3),
+    }
+    with pytest.raises(SceneError) as refused:
+        readers[ending]()
+    assert "somebody" not in str(refused.value)
+    assert "20228" not in str(refused.value)
