@@ -64,7 +64,7 @@ def child(backend: str, thousands: int, steps: int, file: Path) -> None:
         found = measured(run, steps)
     mesh, ranks = run.state.mesh, run.system.backend.ranks
     assert mesh is not None
-    found["unknowns"] = run.system.backend.unknowns(mesh, run.system.controlled)
+    found["unknowns"] = run.system.backend.unknowns(mesh, run.system.prescribed)
     found["memory"] = int(ranks.sum(peak_memory() or 0))
     if ranks.is_root:
         file.write_text(json.dumps(found), encoding="utf-8")

@@ -117,7 +117,7 @@ def rows() -> Iterator[tuple[str, ...]]:
             free = [spent for _, spent in seconds(case.free(), 12)[1]]
         touching = [(near, spent) for near, spent in found if near > 0]
         contact, contacts = (np.mean(column) for column in zip(*((s, n) for n, s in touching), strict=True))
-        unknowns = run.system.backend.unknowns(run.state.mesh, run.system.controlled)
+        unknowns = run.system.backend.unknowns(run.state.mesh, run.system.prescribed)
         figures = f"{np.mean(free):.3f}", f"{contact:.3f}", f"{contact / np.mean(free):.1f}"
         yield case.name, f"{unknowns:,}", f"{contacts:.0f}", *figures, f"{len(touching)}", f"{run.counts.remeshes}"
 

@@ -3,7 +3,8 @@
 * `umfpack`: convection by the latest velocity, the matrix factorised by UMFPACK at each step, as the first examples do.
 * `imex`: convection explicit, so that the matrix is symmetric; integrands compiled to machine code; sparsecholesky at
   each step, since the mesh has moved.
-* `reuse`: as `imex`, with the factors of an earlier step as preconditioner of GMRES; they are made anew every 20 steps.
+* `reuse`: as `imex`, with the factors of an earlier step as preconditioner of GMRES; they are regenerated every 20
+steps.
 """
 
 from __future__ import annotations

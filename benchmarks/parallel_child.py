@@ -65,7 +65,7 @@ def measured(dimension: int, bodies: int, coarseness: float) -> dict[str, Any]:
     pairs, at_wall = count_contacts(select(seen, seen.gap <= RANGE), bodies)
     return {
         "mesh_nodes": len(mesh.points) if mesh.part is None else int(mesh.part.counts[0]),
-        "unknowns": run.system.backend.unknowns(mesh, run.system.motions.controlled),
+        "unknowns": run.system.backend.unknowns(mesh, run.system.motions.prescribed),
         "body_body": pairs,
         "body_wall": at_wall,
         "seconds_collision": float(ranks.sum(collision)) / ranks.size / STEPS,

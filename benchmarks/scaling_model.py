@@ -72,7 +72,7 @@ def measured(mesh: int, steps: int) -> tuple[int, Constants]:
             (logged(SUMS, "count"), logged(EXCHANGES, "count"), logged(EXCHANGES, "messageLength")), before, strict=True
         )
     )
-    unknowns = run.system.backend.unknowns(run.state.mesh, run.system.controlled)
+    unknowns = run.system.backend.unknowns(run.state.mesh, run.system.prescribed)
     local = unknowns / MPI.COMM_WORLD.size
     constants = Constants(seconds / steps / unknowns, sums / steps, rounds / steps, sent / steps / local ** (2 / 3))
     return unknowns, constants

@@ -24,7 +24,7 @@ HOOKS = (
     ("assemble load", "rigidfluid.taylor_hood.sparse", "SparseDiscretisation.mass_times"),
     ("assemble load", "rigidfluid.backends.dolfinx.discretisation", "PetscDiscretisation.mass_times"),
     ("fill P", "rigidfluid.taylor_hood.constraint", "Constraint.place"),
-    ("fill P", "rigidfluid.backends.dolfinx.constraint", "DistributedConstraint.operator"),
+    ("fill P", "rigidfluid.backends.dolfinx.constraint", "DistributedConstraint.matrix"),
     (FACTORISE, "rigidfluid.taylor_hood.lagged_solver", "LaggedSolver._renew"),
     (ITERATE, "rigidfluid.taylor_hood.lagged_factors", "LaggedFactors.iterate"),
     (ITERATE, "rigidfluid.backends.dolfinx.krylov", "Krylov.iterate"),

@@ -58,17 +58,17 @@ class Changed(ScikitFem):
 
 
 class Answering(ScikitFem):
-    """A backend whose answers to impulses are changed on the way in and out."""
+    """A backend whose impulse responses are changed on the way in and out."""
 
     def asked(self, fluid: FluidState, step: Step, impulses: FloatArray) -> tuple[FluidState, Step, FloatArray]:
         return fluid, step, impulses
 
-    def answered(self, response: Response, step: Step, impulses: FloatArray) -> Response:
+    def altered(self, response: Response, step: Step, impulses: FloatArray) -> Response:
         return response
 
     def response(self, fluid, mesh, step, impulses):
         changed = self.asked(fluid, step, impulses)
-        return self.answered(super().response(changed[0], mesh, *changed[1:]), step, impulses)
+        return self.altered(super().response(changed[0], mesh, *changed[1:]), step, impulses)
 
 
 class Overrunning(Changed):
@@ -83,7 +83,7 @@ class SteadyTwist(Changed):
     """Takes no notice of the twists given."""
 
     def given(self, fluid, mesh, step):
-        return fluid, mesh, replace(step, controlled_twist=np.zeros_like(step.controlled_twist))
+        return fluid, mesh, replace(step, prescribed_twist=np.zeros_like(step.prescribed_twist))
 
 
 class FirstOrder(Changed):
@@ -277,52 +277,52 @@ class Stiffer(ScikitFem):
 class Miscounting(ScikitFem):
     """Counts the unknowns without the bodies'."""
 
-    def unknowns(self, mesh, controlled):
-        return super().unknowns(mesh, np.ones_like(controlled))
+    def unknowns(self, mesh, prescribed):
+        return super().unknowns(mesh, np.ones_like(prescribed))
 
 
 class Weightless(Answering):
     """Answers at once with the bodies' own masses."""
 
-    def answered(self, response, step, impulses):
+    def altered(self, response, step, impulses):
         own = np.linalg.solve(step.mass_matrix / step.derivative[0], impulses[..., None])[..., 0]
-        return replace(response, by_mass=np.where(step.controlled[:, None], 0.0, own))
+        return replace(response, inviscid=np.where(step.prescribed[:, None], 0.0, own))
 
 
 class Inviscid(Answering):
     """Answers in a step as at once."""
 
-    def answered(self, response, step, impulses):
-        return replace(response, by_step=response.by_mass)
+    def altered(self, response, step, impulses):
+        return replace(response, viscous=response.inviscid)
 
 
 class Forceful(Answering):
     """Takes the impulses for forces."""
 
-    def answered(self, response, step, impulses):
-        return replace(response, by_step=response.by_step / step.derivative[0])
+    def altered(self, response, step, impulses):
+        return replace(response, viscous=response.viscous / step.derivative[0])
 
 
 class Recoiling(Answering):
     """Takes the forces on the bodies for those on the fluid."""
 
-    def answered(self, response, step, impulses):
-        return Response(-response.by_mass, -response.by_step)
+    def altered(self, response, step, impulses):
+        return Response(-response.inviscid, -response.viscous)
 
 
 class Twisted(Answering):
     """Turns the wrong way."""
 
-    def answered(self, response, step, impulses):
+    def altered(self, response, step, impulses):
         d = step.pose.position.shape[1]
-        return Response(*(_turned_round(twists, d) for twists in (response.by_mass, response.by_step)))
+        return Response(*(_turned_round(twists, d) for twists in (response.inviscid, response.viscous)))
 
 
 class Saturated(Answering):
     """Answers less than twice to twice the impulse."""
 
-    def answered(self, response, step, impulses):
-        return Response(np.tanh(response.by_mass), np.tanh(response.by_step))
+    def altered(self, response, step, impulses):
+        return Response(np.tanh(response.inviscid), np.tanh(response.viscous))
 
 
 class Behind(Answering):
@@ -353,7 +353,7 @@ class Released(Answering):
     """Lets go of the bodies that are driven."""
 
     def asked(self, fluid, step, impulses):
-        return fluid, replace(step, controlled=np.zeros_like(step.controlled)), impulses
+        return fluid, replace(step, prescribed=np.zeros_like(step.prescribed)), impulses
 
 
 class Deaf(Answering):
@@ -462,20 +462,20 @@ def _turned_round(twists: FloatArray, dimension: int) -> FloatArray:
         (Weightless, "test_in_a_short_step_masses_alone_count", ()),
         (Inviscid, "test_in_a_short_step_masses_alone_count", ()),
         (Forceful, "test_in_a_short_step_masses_alone_count", ()),
-        (Recoiling, "test_answers_are_reciprocal", (2,)),
-        (Twisted, "test_answers_are_reciprocal", (2,)),
-        (Deaf, "test_answers_are_reciprocal", (2,)),
-        (Saturated, "test_answers_add_up", (2,)),
-        (Forceful, "test_a_step_answers_as_was_told", (2,)),
-        (Inviscid, "test_a_step_answers_as_was_told", (2,)),
-        (Recoiling, "test_a_step_answers_as_was_told", (2,)),
-        (Behind, "test_a_step_answers_as_was_told", (2,)),
-        (Calm, "test_a_step_answers_as_was_told", (2,)),
+        (Recoiling, "test_responses_are_reciprocal", (2,)),
+        (Twisted, "test_responses_are_reciprocal", (2,)),
+        (Deaf, "test_responses_are_reciprocal", (2,)),
+        (Saturated, "test_responses_add_up", (2,)),
+        (Forceful, "test_a_step_responds_as_was_told", (2,)),
+        (Inviscid, "test_a_step_responds_as_was_told", (2,)),
+        (Recoiling, "test_a_step_responds_as_was_told", (2,)),
+        (Behind, "test_a_step_responds_as_was_told", (2,)),
+        (Calm, "test_a_step_responds_as_was_told", (2,)),
         (Inviscid, "test_without_inertia_of_the_fluid_it_only_drags", (2,)),
         (Forceful, "test_without_inertia_of_the_fluid_it_only_drags", (2,)),
-        (Enlarged, "test_without_new_points_the_present_mesh_answers", (2,)),
-        (Released, "test_driven_bodies_do_not_answer", (2,)),
-        (Scribbling, "test_asking_for_answers_changes_nothing", (2,)),
+        (Enlarged, "test_without_new_points_the_present_mesh_responds", (2,)),
+        (Released, "test_prescribed_bodies_do_not_respond", (2,)),
+        (Scribbling, "test_evaluating_responses_changes_nothing", (2,)),
         (Single, "test_one_step_from_another_state_is_another_one", (2,)),
     ],
 )

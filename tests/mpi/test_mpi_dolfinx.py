@@ -1,4 +1,4 @@
-"""Several processes with DOLFINx' backend take the steps, and give the answers, that one does with scikit-fem's."""
+"""Several processes with DOLFINx' backend take the steps, and give the responses, that one does with scikit-fem's."""
 
 import json
 import shutil
@@ -14,7 +14,7 @@ pytestmark = [
 ]
 
 STEPS = Path(__file__).parents[1] / "support" / "shared_steps.py"
-ANSWERS = Path(__file__).parent / "shared_answers.py"
+RESPONSES = Path(__file__).parent / "shared_responses.py"
 CHANNEL = {
     "scene": {"name": "channel", "dimension": 2},
     "fluid": {"density": 1.0, "viscosity": 0.1, "gravity": [0.0, -10.0], "tolerance": 1e-13},
@@ -88,15 +88,15 @@ def test_three_processes_step_as_one_does(printed, scene):
 
 @pytest.mark.parametrize("scene", [CHANNEL, ROOM], ids=["channel", "room"])
 @pytest.mark.parametrize("count", [1, 2])
-def test_processes_answer_to_impulses_as_one_does(printed, count, scene):
+def test_processes_respond_to_impulses_as_one_does(printed, count, scene):
     """Each to the accuracy that is asked of it."""
-    found = printed(count, ANSWERS, scene, [])
-    assert_all_as_alone(found, 1e-8, by_mass=1e-4, by_step=1e-4, turned=1e-3)
+    found = printed(count, RESPONSES, scene, [])
+    assert_all_as_alone(found, 1e-8, inviscid=1e-4, viscous=1e-4, turned=1e-3)
 
 
 def test_a_step_keeps_no_memory(printed):
     assert_keeps_no_memory(printed(3, STEPS, CHANNEL, [20, 20, 20, 20]), 20)
 
 
-def test_an_answer_keeps_no_memory(printed):
-    assert_keeps_no_memory(printed(2, ANSWERS, CHANNEL, [10, 10, 10, 10]), 10)
+def test_a_response_keeps_no_memory(printed):
+    assert_keeps_no_memory(printed(2, RESPONSES, CHANNEL, [10, 10, 10, 10]), 10)

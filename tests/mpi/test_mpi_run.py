@@ -34,7 +34,7 @@ SETTINGS = {
     "body.0.velocity": [0.0, -2.0],
     "contact.detector": '"narrow_band"',
 }
-"""A disk that nears the floor; its mesh is made anew on the way."""
+"""A disk that nears the floor; its mesh is regenerated on the way."""
 
 BOUNCE = {
     "fluid__viscosity": 0.01,
@@ -114,7 +114,7 @@ def test_two_processes_run_as_one_does_with_a_stop_in_between(mpirun, tmp_path, 
 
 
 def test_two_processes_see_the_impact_that_one_does(mpirun, tmp_path, backend):
-    """In a fluid, where what a contact gives follows from the answers to impulses, on all processes alike."""
+    """In a fluid, where what a contact gives follows from the impulse responses, on all processes alike."""
     folders = [tmp_path / "one", tmp_path / "two"]
     for count, folder in enumerate(folders, start=1):
         succeeded(mpirun(count, *fall(folder, fluid__backend=f'"{backend}"', **BOUNCE)))

@@ -32,7 +32,7 @@ from rigidfluid.core.output.history import History
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.taylor_hood.numbering import Numbering
-from rigidfluid.taylor_hood.surfaces import Surfaces, pinned_vertex
+from rigidfluid.taylor_hood.surfaces import Surfaces, pressure_pin_vertex
 
 pytestmark = pytest.mark.long
 
@@ -252,7 +252,7 @@ def pressure_and_pin(scene: Scene) -> tuple[float, float, float]:
     mean = float(volume @ pressure.mean(axis=1) / volume.sum())
     problem = system.fluid
     numbering = Numbering.from_mesh(state.mesh)
-    pin = pinned_vertex(Surfaces(numbering, state.mesh, problem.conditions, problem.carrier), state.mesh)
+    pin = pressure_pin_vertex(Surfaces(numbering, state.mesh, problem.conditions, problem.carrier), state.mesh)
     apart = np.linalg.norm(state.mesh.points[:, None] - state.pose.position[None], axis=2).min(axis=1)
     inside = np.setdiff1d(np.arange(len(state.mesh.points)), state.mesh.facets)
     assert pin in inside

@@ -241,7 +241,8 @@ def spun(step: float, stepping: Stepping = "substeps") -> Scene:
 
 
 def put_in(history: History) -> float:
-    """Energy stored at the start, and the most that gravity, and faces and driven bodies, had worked by any time."""
+    """Energy stored at the start, and the most that gravity, and faces and prescribed bodies, had worked by any
+    time."""
     energy = history.energy
     driven_by = energy["boundary"] + energy["control"]
     start = energy["kinetic"][0] + energy["contact"][0]

@@ -90,8 +90,8 @@ class Gathered(FluidBackend):
     def probe(self, fluid, mesh, points):
         return self._on_root(lambda mesh, fluid: ({}, self._inner.probe(fluid, mesh, points)), mesh, fluid)[1]
 
-    def unknowns(self, mesh, controlled):
-        return self._on_root(lambda mesh: ({}, self._inner.unknowns(mesh, controlled)), mesh)[1]
+    def unknowns(self, mesh, prescribed):
+        return self._on_root(lambda mesh: ({}, self._inner.unknowns(mesh, prescribed)), mesh)[1]
 
     def forget(self):
         self._inner.forget()

@@ -84,13 +84,13 @@ def linkage(
     pose: Pose,
     joints: Sequence[PlacedJoint] = (),
     ground: Sequence[GroundLink] = (),
-    controlled: Sequence[int] = (),
+    prescribed: Sequence[int] = (),
     given: Any = None,
 ) -> JointLinkage:
-    """Of bodies with `masses`; ``given``: the twists of those that are controlled, zero if not said."""
+    """Of bodies with `masses`; ``given``: the twists of those that are prescribed, zero if not said."""
     count, dimension = pose.position.shape
     held = np.zeros(count, dtype=bool)
-    held[list(controlled)] = True
+    held[list(prescribed)] = True
     rest = np.zeros((count, 3 if dimension == 2 else 6))
     bodies = SingleBodies(*masses(count, dimension), held, pose, split(rest, dimension))
     return JointLinkage(pose, joints, ground, bodies, given or (lambda _: rest))

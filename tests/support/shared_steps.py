@@ -39,7 +39,7 @@ def figures(simulation):
         "energy": list(simulation.history.records["energy"][-1][2:]),
         "probes": [list(row[3:]) for row in simulation.history.records["probes"]],
         "remeshes": simulation.counts.remeshes,
-        "unknowns": simulation.system.backend.unknowns(state.mesh, simulation.system.controlled),
+        "unknowns": simulation.system.backend.unknowns(state.mesh, simulation.system.prescribed),
     }
 
 

@@ -36,8 +36,8 @@ class Drift:
 
 
 def wall_drift(remeshings: int = 50) -> Iterator[Drift]:
-    """A disk of diameter 1 goes through a throat of 1.75 on a wavy path from x = -8 to 8, and the mesh is made anew at
-    each stop; stops are closer where the gap is small, as a mesh must not tangle on the way to the next.
+    """A disk of diameter 1 goes through a throat of 1.75 on a wavy path from x = -8 to 8, and the mesh is regenerated
+    at each stop; stops are closer where the gap is small, as a mesh must not tangle on the way to the next.
 
     Parameters
     ----------

@@ -37,7 +37,7 @@ class Dry(FluidBackend):
 
     def response(self, fluid: FluidState, mesh: Mesh, step: Step, impulses: FloatArray) -> Response:
         """Twists (c, n, d+k) that ``impulses`` give by the bodies' own masses, inviscid and viscous alike."""
-        free, twists = ~step.controlled, np.zeros_like(impulses)
+        free, twists = ~step.prescribed, np.zeros_like(impulses)
         masses = step.mass_matrix[free] / step.derivative[0]
         twists[:, free] = np.linalg.solve(masses, impulses[:, free, :, None])[..., 0]
         return Response(twists, twists)
@@ -57,7 +57,7 @@ class Dry(FluidBackend):
         """Zero velocity (N, d) and zero pressure (N,) at ``points`` (N, d)."""
         return np.zeros_like(points), np.zeros(len(points))
 
-    def unknowns(self, mesh: Mesh, controlled: BoolArray) -> int:
+    def unknowns(self, mesh: Mesh, prescribed: BoolArray) -> int:
         """Zero unknowns: each body's equation stands alone."""
         return 0
 
@@ -66,7 +66,7 @@ class Dry(FluidBackend):
 
 
 def _solve(step: Step) -> FloatArray:
-    free = ~step.controlled
-    twist = step.controlled_twist.copy()
+    free = ~step.prescribed
+    twist = step.prescribed_twist.copy()
     twist[free] = np.linalg.solve(step.mass_matrix[free], step.load[free, :, None])[..., 0]
     return twist

@@ -83,7 +83,7 @@ def _fall_rate(met: DesignContacts) -> FloatArray:
 
 
 def _finding(met: DesignContacts, row: int, rates: _Rates, frequency: float, step: float) -> Finding:
-    bodies = int(np.sum(~met.system.controlled))
+    bodies = int(np.sum(~met.system.prescribed))
     cut = rates.cut_step(step, bodies)
     error = min(rates.error(cut), 1.0)
     found = {

@@ -54,7 +54,7 @@ def _freedom_finding(joints: int, system: System) -> Finding:
     """Count the velocities of free motions, and those that rigid links leave."""
     links = system.joints.links(system.motions.pose, 0.0)
     width = links.rows.shape[2]
-    free = width * int(np.count_nonzero(~system.motions.controlled))
+    free = width * int(np.count_nonzero(~system.motions.prescribed))
     held = int(np.count_nonzero(links.compliance == 0.0))
     found = {"joints": joints, "velocities": free, "held": held, "remaining": free - held}
     text = f"joints and held directions take {held} of the {free} velocities of free motions; {free - held} are left"

@@ -110,7 +110,7 @@ def _later_meshes(system: System, settled: Pose, gap: float, sizes: Sizes, end: 
     fallen = np.linalg.norm(settled.position - system.pose.position, axis=1)
     speed = np.linalg.norm(system.twist.velocity, axis=1)
     if system.loads.travel_speed is not None:
-        speed = np.where(system.controlled, speed, system.loads.travel_speed)
+        speed = np.where(system.prescribed, speed, system.loads.travel_speed)
     way = np.where(fallen > 0.0, fallen, np.minimum(speed * end, float(np.max(system.domain.size))))
     lands = bool(np.any(fallen > 0.0))
     halvings = log2(max(2.0 * sizes.cells_per_gap * sizes.size_body / gap, 1.0)) if lands else 0.0

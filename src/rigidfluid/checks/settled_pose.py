@@ -43,7 +43,7 @@ def settled_pose(system: System, detector: type[Detector], gap: float) -> Pose:
     together = bool(system.motions.names) or bool(system.joints.linked.any())
     if together or count > _MOST_BODIES or detector.name == _SLOW:
         return pose
-    pulled = np.flatnonzero(~system.controlled & np.any(weight != 0.0, axis=1))
+    pulled = np.flatnonzero(~system.prescribed & np.any(weight != 0.0, axis=1))
     down = weight[pulled] / np.linalg.norm(weight[pulled], axis=1, keepdims=True)
     foremost = np.argsort(-np.sum(down * pose.position[pulled], axis=1))
     asked = detector(detector.Options(), system.bodies, surfaces_of(system.domain, count))

@@ -30,7 +30,7 @@ MeshFolder = Annotated[
 Resume = Annotated[bool, typer.Option("--resume", help="Go on from the last checkpoint in DIR.")]
 StudyFile = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")]
 Continue = Annotated[
-    bool, typer.Option("--resume/--fresh", help="Keep the runs that DIR holds already, or run everything anew.")
+    bool, typer.Option("--resume/--fresh", help="Keep the runs that DIR holds already, or run everything again.")
 ]
 Backends = Annotated[
     list[str] | None, typer.Option("--backend", metavar="NAME", help="A fluid backend; name two or more.")

@@ -52,14 +52,14 @@ def boundary_of(file: MeshFile, dimension: int, fluid: int | str | None, scale: 
     else:
         vertices, numbers = file.facets.vertices, file.facets.numbers
     if not len(vertices):
-        raise SceneError(FIELD, "neither cells nor facets", f"a mesh in {dimension} dimensions", "Write the file anew.")
+        raise SceneError(FIELD, "neither cells nor facets", f"a mesh in {dimension} dimensions", "Rewrite the file.")
     joined = _joined(points[:, :dimension], vertices)
     doubled = len(np.unique(vertices)) - len(np.unique(joined[vertices]))
     vertices = joined[vertices]
     sound = np.all(np.diff(np.sort(vertices, axis=1), axis=1) > 0, axis=1)
     if not sound.any():
         found = f"{len(vertices)} facets, all without an area"
-        raise SceneError(FIELD, found, "facets around a region", "Write the file anew.")
+        raise SceneError(FIELD, found, "facets around a region", "Rewrite the file.")
     if len(region):  # the two sides of a wall without thickness, joined
         _refuse_baffles(Cells(vertices, numbers, file.facets.names), sound & _doubled(vertices), points)
     used, compact = np.unique(vertices[sound], return_inverse=True)
@@ -70,7 +70,7 @@ def boundary_of(file: MeshFile, dimension: int, fluid: int | str | None, scale: 
 def _in_space(file: MeshFile, dimension: int) -> FloatArray:
     points = file.points
     if not np.isfinite(points).all():
-        raise SceneError(FIELD, "coordinates that are no numbers", "finite ones", "Write the file anew.")
+        raise SceneError(FIELD, "coordinates that are no numbers", "finite ones", "Rewrite the file.")
     if dimension == 2 and len(points) and np.abs(points[:, 2]).max() > _FLAT * np.abs(points).max():
         found = f"points off the plane z = 0, by up to {np.abs(points[:, 2]).max():.6g}"
         raise SceneError(FIELD, found, "a mesh in the plane, as the scene has 2 dimensions", "Choose another file.")

@@ -169,7 +169,7 @@ def _read(options: CadOptions, dimension: int) -> tuple[Any, float]:
         shape = occ.OCCGeometry(str(path), dim=dimension).shape
     except (meshing.NgException, occ.OCCException, RuntimeError) as error:
         found = f"{path}, which Open CASCADE cannot read ({type(error).__name__})"
-        raise SceneError("domain.file", found, "a whole CAD file", "Write it anew.") from error
+        raise SceneError("domain.file", found, "a whole CAD file", "Rewrite it.") from error
     solids, faces = list(shape.solids), list(shape.faces)
     whole = solids if dimension == 3 else [] if solids else faces
     if len(whole) != 1:

@@ -74,7 +74,7 @@ class MeshDomain(Domain):
         self._whole = FacetSurface(self._facets)
         if not self.volume > _LEAST_VOLUME * float(self.size.max()) ** dimension:
             found = f"facets that enclose a volume of {self.volume:.3g}"
-            raise SceneError(FIELD, found, "facets around a region of some volume", "Write the file anew.")
+            raise SceneError(FIELD, found, "facets around a region of some volume", "Rewrite the file.")
 
     @property
     def facets(self) -> Facets:

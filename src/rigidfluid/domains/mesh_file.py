@@ -158,4 +158,4 @@ def _no_cells(dimension: int) -> Cells:
 
 def _unreadable(path: Path, error: BaseException) -> SceneError:
     found = f"{path}, which cannot be read ({type(error).__name__})"
-    return SceneError(FIELD, found, "a whole mesh file of that kind", "Write it anew.")
+    return SceneError(FIELD, found, "a whole mesh file of that kind", "Rewrite it.")

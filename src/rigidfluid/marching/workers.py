@@ -20,7 +20,7 @@ FEWEST = 4
 
 
 class Workers:
-    """The topology of the latest mesh, and a workspace for each thread; made anew only when the cells change.
+    """The topology of the latest mesh, and a workspace for each thread; regenerated only when the cells change.
 
     0 ``threads`` are as many as there are cores for this process.
     """

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.mechanics.kinematics import given_twist
+from rigidfluid.core.mechanics.kinematics import prescribed_part
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.model.types import Advance, FluidState, Mesh, Step, Twist, Wrench
-from rigidfluid.taylor_hood.boundary import face_leak, face_power, pressure_load
+from rigidfluid.taylor_hood.boundary import face_power, pressure_load, spurious_flux
 from rigidfluid.taylor_hood.container import container_velocity
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution, with_masses
 from rigidfluid.taylor_hood.discretisation import Discretisation, dissipation, kinetic_energy, stress_power
@@ -77,7 +77,7 @@ def _measured(equations: Equations, solution: Solution, on_faces: FloatArray, li
         dissipation_midway=dissipation(discretisation, midway, mean),
         boundary_power=face_power(*faces, on_faces, solution.reaction),
         link_force=link_force,
-        leak=face_leak(*faces),
+        spurious_flux=spurious_flux(*faces),
         grad_div=grad_div_dissipation(discretisation, matrix, velocity),
         source_power=_source_power(discretisation, matrix, velocity, step.time),
         stress_power=stress_power(discretisation, matrix.points, velocity, mean) if begins else None,
@@ -138,7 +138,7 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
         flow=flow - density * frame,
         position=step.kinematics.centres(step.pose),
         mass_matrix=step.mass_matrix,
-        controlled=step.controlled,
+        prescribed=step.prescribed,
         frame=frame,
     )
     if density == 0.0 or d0 == 0.0:
@@ -154,7 +154,7 @@ def _system(equations: Equations, on_faces: FloatArray) -> CoupledSystem:
     discretisation, matrix = equations.discretisation, equations.matrix
     fluid, step = equations.fluid, equations.step
     problem, surfaces = discretisation.problem, discretisation.surfaces
-    node_points, controlled = matrix.node_points, matrix.controlled
+    node_points, prescribed = matrix.node_points, matrix.prescribed
     _, d1, d2 = step.derivative
     e0, e1 = step.extrapolation
     history = d1 * fluid["velocity"] + d2 * fluid["velocity_previous"]
@@ -162,15 +162,15 @@ def _system(equations: Equations, on_faces: FloatArray) -> CoupledSystem:
     if problem.source is not None:
         density_of_load += problem.source(step.time, node_points)
     expected = step.kinematics.motion_twist(e0 * fluid["twist"] + e1 * fluid["twist_previous"])
-    given, driven = given_twist(step)
+    twist, moved = prescribed_part(step)
     return CoupledSystem(
         matrix,
         load=discretisation.mass_times(matrix.points, density_of_load) + on_faces,
         body_load=step.load,
-        given=surfaces.prescribed(step.time, node_points, step.pose.position, flat(given), driven),
+        prescribed=surfaces.prescribed_velocity(step.time, node_points, step.pose.position, flat(twist), moved),
         velocity=extrapolated(fluid, step.extrapolation),
         pressure=e0 * fluid["pressure"] + e1 * fluid["pressure_previous"],
-        twist=np.where(controlled[:, None], step.controlled_twist, expected),
+        twist=np.where(prescribed[:, None], step.prescribed_twist, expected),
         pressure_jump=surfaces.pressure_jump(step.time, matrix.points[: discretisation.numbering.vertices]),
         scale=step.load_scale,
     )

@@ -62,15 +62,15 @@ class TaylorHoodBackend(FluidBackend):
         self._latest_attempt: tuple[FluidState, FluidState] | None = None
 
     @abstractmethod
-    def discretise(self, numbering: Numbering, mesh: Mesh, controlled: BoolArray) -> Discretisation:
-        """The equations on this topology with these motions ``controlled`` (N,).
+    def discretise(self, numbering: Numbering, mesh: Mesh, prescribed: BoolArray) -> Discretisation:
+        """The equations on this topology with these motions ``prescribed`` (N,).
 
         The same ``numbering`` comes again for other motions and after ``forget``.
         """
 
-    def discretise_steady(self, numbering: Numbering, mesh: Mesh, controlled: BoolArray) -> Discretisation:
+    def discretise_steady(self, numbering: Numbering, mesh: Mesh, prescribed: BoolArray) -> Discretisation:
         """The same for flows that do not change in time, in case another solver serves where nothing has inertia."""
-        return self.discretise(numbering, mesh, controlled)
+        return self.discretise(numbering, mesh, prescribed)
 
     @abstractmethod
     def drop_factors(self) -> None:
@@ -98,8 +98,8 @@ class TaylorHoodBackend(FluidBackend):
         from rigidfluid.taylor_hood.transfer import initial, struck
 
         given = self.options.tolerance, mesh, pose
-        motions = Twist(*np.split(step.controlled_twist, [self.problem.dimension], axis=1))
-        if not step.controlled.all():
+        motions = Twist(*np.split(step.prescribed_twist, [self.problem.dimension], axis=1))
+        if not step.prescribed.all():
             fluid, _ = initial(self._projecting_discretisation(mesh), *given, twist)
             motions = self._advanced(fluid, mesh, step, max(self.options.tolerance, _IMPULSE)).twist
         bodies = step.kinematics.component_twist(motions)
@@ -116,7 +116,7 @@ class TaylorHoodBackend(FluidBackend):
     def response(self, fluid: FluidState, mesh: Mesh, step: Step, impulses: FloatArray) -> Response:
         from rigidfluid.taylor_hood.response import response
 
-        discretisation = self._discretisation(mesh, step.controlled)
+        discretisation = self._discretisation(mesh, step.prescribed)
         return response(discretisation, self._matrix(discretisation, fluid, mesh, step), step, impulses)
 
     @final
@@ -157,8 +157,8 @@ class TaylorHoodBackend(FluidBackend):
         return mesh.ranks.bcast(found)
 
     @final
-    def unknowns(self, mesh: Mesh, controlled: BoolArray) -> int:
-        return self._discretisation(mesh, controlled).unknowns
+    def unknowns(self, mesh: Mesh, prescribed: BoolArray) -> int:
+        return self._discretisation(mesh, prescribed).unknowns
 
     @final
     def joined(self, states: Sequence[FluidState], parts: Sequence[Mesh], mesh: Mesh) -> FluidState:
@@ -184,20 +184,20 @@ class TaylorHoodBackend(FluidBackend):
             self._latest = None
         return self._numbering
 
-    def _discretisation(self, mesh: Mesh, controlled: BoolArray) -> Dimensionless:
+    def _discretisation(self, mesh: Mesh, prescribed: BoolArray) -> Dimensionless:
         from rigidfluid.taylor_hood.dimensionless import Dimensionless
 
         numbering = self.numbering_of(mesh)
-        if self._latest is None or not np.array_equal(self._latest[0], controlled):
+        if self._latest is None or not np.array_equal(self._latest[0], prescribed):
             self.drop_factors()  # of other unknowns
-            self._latest = controlled, Dimensionless(self.discretise(numbering, mesh, controlled), mesh)
+            self._latest = prescribed, Dimensionless(self.discretise(numbering, mesh, prescribed), mesh)
         return self._latest[1]
 
     def _advanced(self, fluid: FluidState, mesh: Mesh, step: Step, tolerance: float) -> Advance:
         """One step to a ``tolerance``, from where the latest attempt at it has led."""
         from rigidfluid.taylor_hood.advance import Equations, advance
 
-        discretisation = self._discretisation(mesh, step.controlled)
+        discretisation = self._discretisation(mesh, step.prescribed)
         matrix = self._matrix(discretisation, fluid, mesh, step)
         attempt = self._latest_attempt
         guess = attempt[1] if attempt is not None and attempt[0] is fluid else None
@@ -220,10 +220,10 @@ class TaylorHoodBackend(FluidBackend):
     def _steady_discretisation(self, mesh: Mesh) -> Discretisation:
         from rigidfluid.taylor_hood.dimensionless import Dimensionless
 
-        controlled = np.ones(self.problem.motions, dtype=bool)
-        return Dimensionless(self.discretise_steady(self.numbering_of(mesh), mesh, controlled), mesh)
+        prescribed = np.ones(self.problem.motions, dtype=bool)
+        return Dimensionless(self.discretise_steady(self.numbering_of(mesh), mesh, prescribed), mesh)
 
     def _any_discretisation(self, mesh: Mesh) -> Discretisation:
-        """A discretisation on this topology, whichever bodies are controlled."""
+        """A discretisation on this topology, whichever bodies are prescribed."""
         self.numbering_of(mesh)
         return self._projecting_discretisation(mesh) if self._latest is None else self._latest[1]

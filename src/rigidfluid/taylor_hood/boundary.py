@@ -48,7 +48,7 @@ def face_power(
     return float(surfaces.ranks.sum(power))
 
 
-def face_leak(
+def spurious_flux(
     surfaces: Surfaces,
     inert_density: float,
     node_points: FloatArray,
@@ -58,8 +58,8 @@ def face_leak(
     """Kinetic energy that convection carries out through curved slip faces, per unit time: between their nodes u·n is
     not zero. It gets less with finer cells there."""
     crossed = [face for face in surfaces.faces if face.condition.slips and face.condition.normal is None]
-    leak = 0.0
+    flux = 0.0
     if inert_density > 0.0 and crossed:
         relative = velocity - mesh_velocity()
-        leak = -inert_density * sum(face.energy_inflow(node_points, velocity, relative) for face in crossed)
-    return float(surfaces.ranks.sum(leak))
+        flux = -inert_density * sum(face.energy_inflow(node_points, velocity, relative) for face in crossed)
+    return float(surfaces.ranks.sum(flux))

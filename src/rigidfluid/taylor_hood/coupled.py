@@ -21,7 +21,7 @@ class CoupledMatrix:
     ``points`` (vertices + K, d): the mesh's geometry; ``node_points`` (nodes, d). ``advection`` a and ``flow`` c,
     (nodes, d), already hold the density: c is what flows past the container, a what flows past the mesh; the term of
     ∇·c keeps convection from making energy.
-    ``position``, ``mass_matrix``, ``controlled`` are of all motions that carry the bodies, as in `Step`. ``at_once``:
+    ``position``, ``mass_matrix``, ``prescribed`` are of all motions that carry the bodies, as in `Step`. ``at_once``:
     the masses alone of a step's matrix, 𝓜, the matrix of inviscid impulse responses; None where it is not wanted.
     """
 
@@ -33,7 +33,7 @@ class CoupledMatrix:
     flow: FloatArray
     position: FloatArray
     mass_matrix: FloatArray
-    controlled: BoolArray
+    prescribed: BoolArray
     frame: FloatArray
     at_once: CoupledMatrix | None = None
 
@@ -58,7 +58,7 @@ class CoupledSystem:
     """A `CoupledMatrix` with its right side and a first guess.
 
     ``load`` (nodes, d): with several processes a node's load is the sum of what they have there. ``body_load`` is of
-    all bodies. ``given`` (nodes, d): velocities where they are prescribed, zero elsewhere. ``velocity``, ``pressure``,
+    all bodies. ``prescribed`` (nodes, d): prescribed velocities, zero elsewhere. ``velocity``, ``pressure``,
     ``twist`` are the guess. ``pressure_jump`` (vertices,): the excess of the pressure there over that at images on
     periodic faces. ``scale``: the size of the largest parts that the right side is a sum of; where they
     cancel, the residual is held against it. ``again``: the guess is a solution of nearly the same system.
@@ -67,7 +67,7 @@ class CoupledSystem:
     matrix: CoupledMatrix
     load: FloatArray
     body_load: FloatArray
-    given: FloatArray
+    prescribed: FloatArray
     velocity: FloatArray
     pressure: FloatArray
     twist: FloatArray

@@ -15,7 +15,7 @@ class CoupledProjection:
     Parameters
     ----------
     target : Discretisation
-        All its bodies are controlled.
+        All its bodies are prescribed.
     points : (vertices + K, d) array
         The geometry.
     position : (N, d) array
@@ -37,12 +37,12 @@ class CoupledProjection:
             flow=still,
             position=position,
             mass_matrix=np.zeros((motions, width, width)),
-            controlled=np.ones(motions, dtype=bool),
+            prescribed=np.ones(motions, dtype=bool),
             frame=np.zeros(numbering.dimension),
         )
 
     def nearest(
-        self, velocity: FloatArray, tolerance: float, guess: FloatArray, held: FloatArray | None = None
+        self, velocity: FloatArray, tolerance: float, guess: FloatArray, prescribed: FloatArray | None = None
     ) -> FloatArray:
         target, matrix = self._target, self._matrix
         none, still = np.zeros(matrix.mass_matrix.shape[:2]), np.zeros(target.numbering.vertices)
@@ -51,7 +51,7 @@ class CoupledProjection:
             matrix,
             load=target.mass_times(matrix.points, velocity),
             body_load=none,
-            given=target.surfaces.held_part(velocity if held is None else held),
+            prescribed=target.surfaces.prescribed_part(velocity if prescribed is None else prescribed),
             velocity=guess,
             pressure=still,
             twist=none,

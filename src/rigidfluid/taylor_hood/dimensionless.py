@@ -63,7 +63,7 @@ class Dimensionless:
     def solve(self, system: CoupledSystem, tolerance: float) -> Solution:
         scaled = self._scaled(system.matrix)
         found, twists = self.inner.solve(scaled.system(system), tolerance), scaled.twists
-        twist = np.where(system.matrix.controlled[:, None], system.twist, found.twist * twists)
+        twist = np.where(system.matrix.prescribed[:, None], system.twist, found.twist * twists)
         return Solution(
             velocity=found.velocity,
             pressure=found.pressure * scaled.pressure,
@@ -107,7 +107,7 @@ class _Scaled:
             flow=m.flow / self.pressure,
             position=m.position / length,
             mass_matrix=m.mass_matrix * self.twists[:, None] * self.twists / self.force,
-            controlled=m.controlled,
+            prescribed=m.prescribed,
             frame=m.frame,
         )
 
@@ -132,9 +132,9 @@ class _ScaledProjection:
     volume: float
 
     def nearest(
-        self, velocity: FloatArray, tolerance: float, guess: FloatArray, held: FloatArray | None = None
+        self, velocity: FloatArray, tolerance: float, guess: FloatArray, prescribed: FloatArray | None = None
     ) -> FloatArray:
-        return self.inner.nearest(velocity, tolerance, guess, held)
+        return self.inner.nearest(velocity, tolerance, guess, prescribed)
 
     def product(self, first: FloatArray, second: FloatArray) -> float:
         return self.inner.product(first, second) * self.volume

@@ -14,15 +14,15 @@ from rigidfluid.taylor_hood.surfaces import Surfaces
 
 
 class Projection(Protocol):
-    """Projection onto velocities without divergence on one geometry, with values held on bodies and prescribed
+    """Projection onto velocities without divergence on one geometry, with values prescribed on bodies and
     faces."""
 
     def nearest(
-        self, velocity: FloatArray, tolerance: float, guess: FloatArray, held: FloatArray | None = None
+        self, velocity: FloatArray, tolerance: float, guess: FloatArray, prescribed: FloatArray | None = None
     ) -> FloatArray:
         """Velocity (nodes, d) without divergence nearest to ``velocity`` (nodes, d) in L², from a ``guess`` onwards.
 
-        It equals ``held`` (nodes, d), by default ``velocity`` too, on bodies and prescribed faces. Its relative
+        It equals ``prescribed`` (nodes, d), by default ``velocity`` too, on bodies and prescribed faces. Its relative
         residual is ``tolerance``; raises StepRejected.
         """
 
@@ -45,7 +45,7 @@ class Discretisation(Protocol):
         """(field, v) for every nodal test function over this process' cells, (nodes, d)."""
 
     def projection(self, points: FloatArray, position: FloatArray) -> Projection:
-        """Projection on the geometry ``points`` with motions at ``position`` (N, d), all of them controlled."""
+        """Projection on the geometry ``points`` with motions at ``position`` (N, d), all of them prescribed."""
 
     def strain_square(self, points: FloatArray, velocity: FloatArray) -> float:
         """∫ ½ (∇u + ∇uᵀ):(∇u + ∇uᵀ) over this process' cells."""

@@ -30,7 +30,7 @@ def formula_flow(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pos
     node_points = target.numbering.node_points(mesh.geometry)
     with surfaces.ranks.raise_on_all():
         wanted = velocity(0.0, node_points)
-    wanted += surfaces.held_part(_prescribed_velocity(target, node_points, state) - wanted)
+    wanted += surfaces.prescribed_part(_prescribed_velocity(target, node_points, state) - wanted)
     state["velocity"] = state["velocity_previous"] = project(target, tolerance, wanted, mesh.geometry, pose.position)
     return state
 
@@ -69,7 +69,7 @@ def _stokes(target: Discretisation, mesh: Mesh, state: FluidState) -> CoupledSys
         flow=still,
         position=state["position"],
         mass_matrix=np.zeros((*bodies.shape, bodies.shape[1])),
-        controlled=np.ones(len(bodies), dtype=bool),
+        prescribed=np.ones(len(bodies), dtype=bool),
         frame=np.zeros(problem.dimension),
     )
     given = _prescribed_velocity(target, node_points, state)
@@ -99,7 +99,7 @@ def _prescribed_velocity(target: Discretisation, node_points: FloatArray, state:
     """Velocities (nodes, d) prescribed at time 0, with all bodies moving as they do then; zero elsewhere."""
     twist = state["twist"]
     every = np.ones(len(twist), dtype=bool)
-    return target.surfaces.prescribed(0.0, node_points, state["position"], twist, every)
+    return target.surfaces.prescribed_velocity(0.0, node_points, state["position"], twist, every)
 
 
 def _relative_norm(target: Discretisation, points: FloatArray, change: FloatArray, velocity: FloatArray) -> float:

@@ -176,7 +176,7 @@ class LaggedSolver(ABC, Generic[Matrix]):
             self.forget()
             raise StepRejected(
                 "fluid.backend",
-                f"answers to impulses that do not converge to {tolerance:.1e}",
+                f"impulse responses that do not converge to {tolerance:.1e}",
                 "converging ones",
                 "Shorten time.step, or look at the mesh near the bodies.",
             )

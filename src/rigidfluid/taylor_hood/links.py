@@ -95,7 +95,7 @@ def _power(compliance: FloatArray, missing: FloatArray) -> float:
 
 def _power_of_motions(system: CoupledSystem, solution: Solution) -> float:
     """Power of inertia and load on the free motions [energy/time]."""
-    free = ~system.matrix.controlled
+    free = ~system.matrix.prescribed
     twist, load = solution.twist[free], system.body_load[free]
     inertia = float(np.einsum("ni,nij,nj->", twist, system.matrix.mass_matrix[free], twist))
     return inertia + float(np.sum(np.abs(load * twist)))

@@ -14,14 +14,14 @@ from rigidfluid.taylor_hood.constraint import Constraint
 
 @dataclass(frozen=True, eq=False)
 class Parts:
-    """Parts of the matrix Pᵀ K P + masses: K ``stiffness``, P of the ``constraint``, ``masses`` (n, d+k, d+k) of the
-    free motions.
+    """Parts of the matrix Pᵀ K P + masses: K ``system_matrix``, P of the ``constraint``, ``masses`` (n, d+k, d+k) of
+    the free motions.
 
     ``points`` (vertices, d) of the mesh; the ``coefficients`` in K; ``reduced()``: the matrix itself.
     """
 
     constraint: Constraint
-    stiffness: sparse.csr_array
+    system_matrix: sparse.csr_array
     masses: FloatArray
     points: FloatArray
     coefficients: Coefficients

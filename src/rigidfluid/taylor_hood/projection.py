@@ -30,7 +30,7 @@ class Masses(NamedTuple):
 
 
 class SparseProjection:
-    """Minimises ½ (v - u, v - u) over v = held + P x with B v = 0, held where bodies and faces give it.
+    """Minimises ½ (v - u, v - u) over v = prescribed + P x with B v = 0, prescribed on bodies and faces.
 
     Conjugate gradients preconditioned by D, the diagonal of the mass matrix, whose steps are g - D⁻¹Bᵀ(B D⁻¹Bᵀ)⁻¹B g
     (Gould, Hribar and Nocedal 2001, doi:10.1137/S1064827598345667). The matrix in brackets has a row for each pressure,
@@ -42,7 +42,7 @@ class SparseProjection:
     masses : Masses
         Masses on one geometry.
     constraint : Constraint
-        P, placed there; all bodies are held.
+        P, placed there; all bodies are prescribed.
     orderings : Orderings
         Orders of elimination of matrices on the same topology.
     """
@@ -50,7 +50,7 @@ class SparseProjection:
     def __init__(self, masses: Masses, constraint: Constraint, orderings: Orderings) -> None:
         self._mass, self._constraint = masses.mass, constraint
         velocities, free = masses.divergence.shape[1], constraint.twist_start
-        self._spread = constraint.operator[:velocities, :free]
+        self._spread = constraint.matrix[:velocities, :free]
         self._collect = constraint.transposed[:free, :velocities]
         pressures = constraint.transposed[constraint.first_pressure :, velocities:]
         self._whole_divergence = sparse.csr_array(pressures @ masses.divergence)
@@ -66,23 +66,23 @@ class SparseProjection:
         return float(np.sum(first * times(self._mass, second)))
 
     def nearest(
-        self, velocity: FloatArray, tolerance: float, guess: FloatArray, held: FloatArray | None = None
+        self, velocity: FloatArray, tolerance: float, guess: FloatArray, prescribed: FloatArray | None = None
     ) -> FloatArray:
-        """The velocity (nodes, d) without divergence nearest to ``velocity``, and equal to ``held`` where it is held.
+        """The velocity (nodes, d) without divergence nearest to ``velocity``, and equal to ``prescribed`` where it is.
 
         Its residual is ``tolerance`` times the norm of the ``guess``' load; raises StepRejected.
         """
         constraint, surfaces = self._constraint, self._constraint.surfaces
-        held = surfaces.held_part(velocity if held is None else held)
+        prescribed = surfaces.prescribed_part(velocity if prescribed is None else prescribed)
         x = surfaces.frames.local_components(guess).ravel()[constraint.free_unknowns[: constraint.twist_start]]
-        x = self._without_divergence(held, x)
-        enough = tolerance * float(np.linalg.norm(self._load(self._whole(held, x))))
+        x = self._without_divergence(prescribed, x)
+        enough = tolerance * float(np.linalg.norm(self._load(self._whole(prescribed, x))))
         iterations = 0
         while True:  # round-off in single precision takes the iterates off those without divergence
-            residual = self._load(velocity - self._whole(held, x))
+            residual = self._load(velocity - self._whole(prescribed, x))
             residual = residual - self._force(self._divergence @ (residual / self._diagonal), refined=True)
             if np.linalg.norm(residual) <= enough:
-                return self._whole(held, x)
+                return self._whole(prescribed, x)
             if iterations >= _MOST:
                 raise StepRejected(
                     "fluid.tolerance",
@@ -91,7 +91,7 @@ class SparseProjection:
                     "Loosen fluid.tolerance.",
                 )
             correction, spent = self._correction(residual, enough, _MOST - iterations)
-            x, iterations = self._without_divergence(held, x + correction), iterations + spent
+            x, iterations = self._without_divergence(prescribed, x + correction), iterations + spent
 
     def _correction(self, residual: FloatArray, enough: float, most: int) -> tuple[FloatArray, int]:
         """Correction of x for a ``residual``, iterated until its norm is ``enough``, and the iterations, at
@@ -111,9 +111,9 @@ class SparseProjection:
             direction = step + (product / before) * direction
         return found, most
 
-    def _without_divergence(self, held: FloatArray, x: FloatArray) -> FloatArray:
+    def _without_divergence(self, prescribed: FloatArray, x: FloatArray) -> FloatArray:
         """The nearest x in D's measure, to round-off."""
-        divergence = self._divergence @ x + self._whole_divergence @ held.ravel()
+        divergence = self._divergence @ x + self._whole_divergence @ prescribed.ravel()
         nearest: FloatArray = x - self._force(divergence, refined=True) / self._diagonal
         return nearest
 
@@ -129,8 +129,8 @@ class SparseProjection:
         force: FloatArray = self._gradient @ pressure
         return force
 
-    def _whole(self, held: FloatArray, x: FloatArray) -> FloatArray:
-        return held + (self._spread @ x).reshape(held.shape)
+    def _whole(self, prescribed: FloatArray, x: FloatArray) -> FloatArray:
+        return prescribed + (self._spread @ x).reshape(prescribed.shape)
 
     def _load(self, velocity: FloatArray) -> FloatArray:
         """(velocity, v) of the free test functions."""

@@ -26,21 +26,21 @@ class ReducedMatrix:
     ----------
     constraint : Constraint
         P.
-    stiffness : sparse array
+    system_matrix : sparse array
         A K of the topology; all have its pattern.
     """
 
-    def __init__(self, constraint: Constraint, stiffness: sparse.csr_array) -> None:
+    def __init__(self, constraint: Constraint, system_matrix: sparse.csr_array) -> None:
         self._constraint = constraint
-        pattern = _ones(constraint.transposed) @ _ones(stiffness) @ _ones(constraint.operator)
+        pattern = _ones(constraint.transposed) @ _ones(system_matrix) @ _ones(constraint.matrix)
         pattern = sparse.csr_array(pattern + _blocks(constraint))
         pattern.sort_indices()
         self._indptr, self._indices = pattern.indptr.astype(np.int32), pattern.indices.astype(np.int32)
 
-    def filled(self, stiffness: sparse.csr_array, masses: FloatArray) -> sparse.csr_array:
+    def filled(self, system_matrix: sparse.csr_array, masses: FloatArray) -> sparse.csr_array:
         """Pᵀ K P for the present P, with ``masses`` (n, d+k, d+k) of the bodies that are free on their twists."""
         constraint = self._constraint
-        factors = _arrays(constraint.transposed), _arrays(stiffness), _arrays(constraint.operator)
+        factors = _arrays(constraint.transposed), _arrays(system_matrix), _arrays(constraint.matrix)
         data = _entries(self._indptr, self._indices, *factors, constraint.twist_start, masses)
         return sparse.csr_array((data, self._indices, self._indptr), shape=(constraint.unknowns,) * 2)
 
@@ -58,7 +58,7 @@ def _blocks(constraint: Constraint) -> sparse.csr_array:
     """Ones where a body's mass may be, on the twists of each free body."""
     d = constraint.surfaces.numbering.dimension
     width = d + (1 if d == 2 else 3)
-    free = int(np.count_nonzero(~constraint.controlled))
+    free = int(np.count_nonzero(~constraint.prescribed))
     twists = constraint.twist_start + np.arange(free * width).reshape(-1, width)
     place = np.repeat(twists, width, axis=1).ravel(), np.tile(twists, (1, width)).ravel()
     return sparse.coo_array((np.ones(len(place[0])), place), shape=(constraint.unknowns,) * 2).tocsr()

@@ -35,6 +35,6 @@ def response(discretisation: Discretisation, matrix: CoupledMatrix, step: Step, 
 
 
 def _body_response(matrix: CoupledMatrix, loads: FloatArray) -> FloatArray:
-    free, twists = ~matrix.controlled, np.zeros_like(loads)
+    free, twists = ~matrix.prescribed, np.zeros_like(loads)
     twists[free] = np.linalg.solve(matrix.mass_matrix[free], loads[free])
     return twists

@@ -58,11 +58,11 @@ class Assembly(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class _Assembled:
-    """Pᵀ K P of a `CoupledMatrix` with the ``masses`` (n, d+k, d+k) of the free motions: K ``stiffness``, P of the
+    """Pᵀ K P of a `CoupledMatrix` with the ``masses`` (n, d+k, d+k) of the free motions: K ``system_matrix``, P of the
     ``constraint``, with the ``coefficients`` in K."""
 
     coupled: CoupledMatrix
-    stiffness: sparse.csr_array
+    system_matrix: sparse.csr_array
     constraint: Constraint
     masses: FloatArray
     coefficients: Coefficients
@@ -75,7 +75,7 @@ class _Assembled:
 
     def apply(self, x: FloatArray) -> FloatArray:
         """The matrix times x (unknowns,) or (unknowns, c)."""
-        result: FloatArray = self.constraint.transposed @ (self.stiffness @ (self.constraint.operator @ x))
+        result: FloatArray = self.constraint.transposed @ (self.system_matrix @ (self.constraint.matrix @ x))
         of_bodies = x[self.twists].reshape(*self.masses.shape[:2], *x.shape[1:])
         moved = np.einsum("nij,nj...->ni...", self.masses, of_bodies)
         result[self.twists] += moved.reshape(x[self.twists].shape)
@@ -95,8 +95,8 @@ class SparseDiscretisation:
         Kept from topology to topology; they must have been told to forget the last one.
     mesh : Mesh
         The topology.
-    controlled : (N,) bool
-        Motions whose twist is given.
+    prescribed : (N,) bool
+        Motions whose twist is prescribed.
     """
 
     def __init__(
@@ -105,12 +105,12 @@ class SparseDiscretisation:
         assembly: Assembly,
         solvers: Solvers[LaggedSolver[Parts]],
         mesh: Mesh,
-        controlled: BoolArray,
+        prescribed: BoolArray,
     ) -> None:
         self.problem = problem
         self.numbering = assembly.numbering
         self.surfaces = Surfaces(assembly.numbering, mesh, problem.conditions, problem.carrier)
-        self._constraint = Constraint(self.surfaces, mesh, controlled)
+        self._constraint = Constraint(self.surfaces, mesh, prescribed)
         self._assembly = assembly
         self._solvers = solvers
         self._latest: dict[bool, _Assembled] = {}
@@ -137,12 +137,12 @@ class SparseDiscretisation:
 
     def solve(self, system: CoupledSystem, tolerance: float) -> Solution:
         """Solve Pᵀ(K(P x + given - frame) - load) + (M x - L on the twists) = 0 from the guess onwards."""
-        s, constraint, free = system, self._constraint, ~system.matrix.controlled
+        s, constraint, free = system, self._constraint, ~system.matrix.prescribed
         assembled, solver = self._assembled(s.matrix), self._solvers.select(s.matrix.viscosity)
         zero = np.zeros(self.numbering.vertices)
-        given = np.concatenate([(s.given - s.matrix.frame).ravel(), s.pressure_jump])
+        given = np.concatenate([(s.prescribed - s.matrix.frame).ravel(), s.pressure_jump])
         load = np.concatenate([s.load.ravel(), zero])
-        known = assembled.stiffness @ given if given.any() else 0.0
+        known = assembled.system_matrix @ given if given.any() else 0.0
         right_side = constraint.transposed @ (load - known)
         right_side[assembled.twists] += s.body_load[free].ravel()
         guess = self._guess(s, assembled.twists)
@@ -151,20 +151,20 @@ class SparseDiscretisation:
         enough, outdated = tolerance * scale, self._is_outdated(s.matrix)
         correction, _ = solver.solve(self._operator(assembled), residual, enough, outdated, s.again)
         reduced = guess + correction
-        everything = constraint.operator @ reduced + given
+        everything = constraint.matrix @ reduced + given
         twist = s.twist.copy()
         twist[free] = reduced[assembled.twists].reshape(-1, twist.shape[1])
-        velocity, pressure = np.split(everything, [s.given.size])
-        reaction = (assembled.stiffness @ everything - load)[: s.given.size]
+        velocity, pressure = np.split(everything, [s.prescribed.size])
+        reaction = (assembled.system_matrix @ everything - load)[: s.prescribed.size]
         jump_load = None
         if s.pressure_jump.any():
-            of_jump = assembled.stiffness @ np.concatenate([np.zeros(s.given.size), s.pressure_jump])
-            jump_load = -of_jump[: s.given.size].reshape(s.given.shape)
-        velocity = velocity.reshape(s.given.shape) + s.matrix.frame
-        return Solution(velocity, pressure, twist, reaction.reshape(s.given.shape), jump_load)
+            of_jump = assembled.system_matrix @ np.concatenate([np.zeros(s.prescribed.size), s.pressure_jump])
+            jump_load = -of_jump[: s.prescribed.size].reshape(s.prescribed.shape)
+        velocity = velocity.reshape(s.prescribed.shape) + s.matrix.frame
+        return Solution(velocity, pressure, twist, reaction.reshape(s.prescribed.shape), jump_load)
 
     def twist_response(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
-        assembled, free = self._assembled(matrix), ~matrix.controlled
+        assembled, free = self._assembled(matrix), ~matrix.prescribed
         found = np.zeros_like(wrenches)
         responses = self._impulse_response(assembled, wrenches, tolerance)[assembled.twists]
         found[free] = responses.reshape(-1, *wrenches.shape[1:])
@@ -173,7 +173,7 @@ class SparseDiscretisation:
     def velocity_response(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
         response = self._impulse_response(self._assembled(matrix), wrench[:, :, None], tolerance)[:, 0]
         size = self.numbering.nodes * self.numbering.dimension
-        return np.asarray((self._constraint.operator @ response)[:size].reshape(self.numbering.nodes, -1))
+        return np.asarray((self._constraint.matrix @ response)[:size].reshape(self.numbering.nodes, -1))
 
     def memory(self) -> dict[str, FloatArray]:
         """Arrays that the next step depends on beside the state: the matrices of the factors, and the solvers'
@@ -208,7 +208,7 @@ class SparseDiscretisation:
             flow=memory["flow"],
             position=memory["position"],
             mass_matrix=memory["mass_matrix"],
-            controlled=self._constraint.controlled,
+            prescribed=self._constraint.prescribed,
             frame=memory["frame"],
         )
 
@@ -216,7 +216,7 @@ class SparseDiscretisation:
         """All unknowns (unknowns, c) by ``wrenches`` (n, d+k, c) on the bodies alone."""
         solver = self._solvers.select(assembled.coupled.viscosity)
         right_sides = np.zeros((self.unknowns, wrenches.shape[2]), order="F")
-        right_sides[assembled.twists] = wrenches[~assembled.coupled.controlled].reshape(-1, wrenches.shape[2])
+        right_sides[assembled.twists] = wrenches[~assembled.coupled.prescribed].reshape(-1, wrenches.shape[2])
         return solver.solve_columns(self._operator(assembled), right_sides, tolerance)
 
     def _assembled(self, matrix: CoupledMatrix) -> _Assembled:
@@ -229,31 +229,31 @@ class SparseDiscretisation:
 
     def _assemble(self, m: CoupledMatrix) -> _Assembled:
         coefficients = coefficients_of(self.numbering, m)
-        stiffness = self._assembly.matrix(m.points, coefficients)
+        system_matrix = self._assembly.matrix(m.points, coefficients)
         self._constraint.place(m.node_points, m.position)
-        return _Assembled(m, stiffness, self._constraint, m.mass_matrix[~m.controlled], coefficients)
+        return _Assembled(m, system_matrix, self._constraint, m.mass_matrix[~m.prescribed], coefficients)
 
     def _operator(self, assembled: _Assembled) -> Operator[Parts]:
         return Operator(assembled.apply, partial(self._parts, assembled))
 
     def _parts(self, assembled: _Assembled) -> Parts:
         """Ingredients of a preconditioner of this matrix, which is kept as its origin."""
-        m, stiffness, masses = assembled.coupled, assembled.stiffness, assembled.masses
+        m, system_matrix, masses = assembled.coupled, assembled.system_matrix, assembled.masses
         self._made_from[m.viscosity != 0.0] = m
 
         def reduced() -> sparse.csr_array:
-            return self._reduced_matrix(stiffness).filled(stiffness, masses)
+            return self._reduced_matrix(system_matrix).filled(system_matrix, masses)
 
-        return Parts(self._constraint, stiffness, masses, m.points, assembled.coefficients, reduced)
+        return Parts(self._constraint, system_matrix, masses, m.points, assembled.coefficients, reduced)
 
     def _is_outdated(self, matrix: CoupledMatrix) -> bool:
         """Whether the factors at hand are of a step of another length or order, which serve badly."""
         origin = self._made_from.get(matrix.viscosity != 0.0)
         return origin is not None and abs(matrix.inertia - origin.inertia) > _OUTDATED * origin.inertia
 
-    def _reduced_matrix(self, stiffness: sparse.csr_array) -> ReducedMatrix:
+    def _reduced_matrix(self, system_matrix: sparse.csr_array) -> ReducedMatrix:
         if self._reduced is None:
-            self._reduced = ReducedMatrix(self._constraint, stiffness)
+            self._reduced = ReducedMatrix(self._constraint, system_matrix)
         return self._reduced
 
     def _guess(self, system: CoupledSystem, twists: slice) -> FloatArray:
@@ -263,5 +263,5 @@ class SparseDiscretisation:
         guess = np.empty(constraint.unknowns)
         velocity = self.surfaces.frames.local_components(system.velocity)
         guess[constraint.free_columns] = np.concatenate([velocity.ravel(), pressure])[constraint.free_unknowns]
-        guess[twists] = system.twist[~system.matrix.controlled].ravel()
+        guess[twists] = system.twist[~system.matrix.prescribed].ravel()
         return guess

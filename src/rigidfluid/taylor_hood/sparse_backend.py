@@ -64,24 +64,24 @@ class SparseBackend(TaylorHoodBackend):
         """The integrals over the cells of a topology that was not seen before."""
 
     @final
-    def discretise(self, numbering: Numbering, mesh: Mesh, controlled: BoolArray) -> SparseDiscretisation:
-        return self._discretised(numbering, mesh, controlled, self._method(numbering.unknowns))
+    def discretise(self, numbering: Numbering, mesh: Mesh, prescribed: BoolArray) -> SparseDiscretisation:
+        return self._discretised(numbering, mesh, prescribed, self._method(numbering.unknowns))
 
     @final
-    def discretise_steady(self, numbering: Numbering, mesh: Mesh, controlled: BoolArray) -> SparseDiscretisation:
+    def discretise_steady(self, numbering: Numbering, mesh: Mesh, prescribed: BoolArray) -> SparseDiscretisation:
         """Discretise by LU factors where there is convection: without inertia blocks do not master it."""
         method = "lu" if self.problem.inertia else self._method(numbering.unknowns)
-        return self._discretised(numbering, mesh, controlled, method)
+        return self._discretised(numbering, mesh, prescribed, method)
 
     def _discretised(
-        self, numbering: Numbering, mesh: Mesh, controlled: BoolArray, method: str
+        self, numbering: Numbering, mesh: Mesh, prescribed: BoolArray, method: str
     ) -> SparseDiscretisation:
         from rigidfluid.taylor_hood.sparse import SparseDiscretisation
 
         if self._assembly is None or self._assembly.numbering is not numbering:
             self._assembly = self.assembly(numbering)
         self._geometry = mesh.geometry  # says which pressure is fixed, and the normals of faces
-        return SparseDiscretisation(self.problem, self._assembly, self._solvers[method], mesh, controlled)
+        return SparseDiscretisation(self.problem, self._assembly, self._solvers[method], mesh, prescribed)
 
     @final
     def memory(self) -> FluidState:
@@ -90,9 +90,9 @@ class SparseBackend(TaylorHoodBackend):
         self._latest_attempt = None
         if self._latest is None:
             return {}
-        controlled, discretisation = self._latest[0], self._latest[1].inner
+        prescribed, discretisation = self._latest[0], self._latest[1].inner
         assert isinstance(discretisation, SparseDiscretisation)
-        return {"controlled": controlled.astype(float), "geometry": self._geometry} | discretisation.memory()
+        return {"controlled": prescribed.astype(float), "geometry": self._geometry} | discretisation.memory()
 
     @final
     def recall(self, memory: FluidState, mesh: Mesh) -> None:

@@ -76,12 +76,12 @@ class Surfaces:
         self.velocity_free[self.images] = False
         self.enclosed = not any(condition.is_open for condition in conditions)
 
-    def prescribed(
-        self, time: float, node_points: FloatArray, position: FloatArray, twist: FloatArray, controlled: BoolArray
+    def prescribed_velocity(
+        self, time: float, node_points: FloatArray, position: FloatArray, twist: FloatArray, prescribed: BoolArray
     ) -> FloatArray:
         """Velocity (nodes, d) with the prescribed values in place and zero elsewhere.
 
-        ``twist`` (n, d+k) is read for the ``controlled`` (n,) bodies alone.
+        ``twist`` (n, d+k) is read for the ``prescribed`` (n,) bodies alone.
         """
         velocity = np.zeros_like(node_points)
         with self.ranks.raise_on_all():
@@ -91,7 +91,7 @@ class Surfaces:
                 velocity[face.nodes] = face.condition.velocity(time, node_points[face.nodes])
         if self.enclosed:
             self._balance(time, velocity, node_points)
-        self.move_with_bodies(velocity, node_points, position, twist, controlled)
+        self.move_with_bodies(velocity, node_points, position, twist, prescribed)
         return velocity
 
     def spread(self, unknowns: IntArray) -> tuple[IntArray, IntArray, FloatArray]:
@@ -129,7 +129,7 @@ class Surfaces:
                 jump[vertices] += face.condition.pressure(time, points[vertices])
         return jump
 
-    def held_part(self, velocity: FloatArray) -> FloatArray:
+    def prescribed_part(self, velocity: FloatArray) -> FloatArray:
         """The part of a ``velocity`` (nodes, d) that is not free; zero on oblique, curved and periodic faces, where
         the velocity that is held is zero, or another node's."""
         held = np.where(self.velocity_free, 0.0, velocity)
@@ -146,7 +146,8 @@ class Surfaces:
         velocity[nodes] = rigid_velocity(twist[body], node_points[nodes] - position[body])
 
     def _balance(self, time: float, velocity: FloatArray, node_points: FloatArray) -> None:
-        """Scale inflow and outflow of an enclosed flow to be equal on this mesh; else a pinned vertex leaks.
+        """Scale inflow and outflow of an enclosed flow to be equal on this mesh; else there is a spurious source at the
+        pin.
 
         Quadratic elements see a prescribed flux up to their error, near the walls' corners above all.
         """
@@ -210,8 +211,9 @@ def rigid_velocity(twist: FloatArray, arm: FloatArray) -> FloatArray:
     return np.asarray(twist[..., :d] + cross(twist[..., d:], arm))
 
 
-def pinned_vertex(surfaces: Surfaces, mesh: Mesh) -> int | None:
-    """The vertex farthest from all bodies: where an enclosed flow's pressure is pinned, so that no gap feels it.
+def pressure_pin_vertex(surfaces: Surfaces, mesh: Mesh) -> int | None:
+    """Pressure pin, the vertex farthest from all bodies: there an enclosed flow's pressure is zero, so that no gap
+    feels it.
 
     Not on the boundary, if there is another: a corner's pressure may be felt by nobody. None in all processes but one.
     """

@@ -63,8 +63,9 @@ def transfer(flow: Flow, target: Discretisation, tolerance: float, new: Mesh) ->
         correction = projected - velocity
         scale = 1.0
         if inertia > 0.0:
-            held = target.surfaces.held_part(projected)
-            scale, beside = _rotational_part(projection, projected, held, 2.0 * energy / inertia, tolerance, beside)
+            prescribed = target.surfaces.prescribed_part(projected)
+            wanted = 2.0 * energy / inertia
+            scale, beside = _rotational_part(projection, projected, prescribed, wanted, tolerance, beside)
         moved["velocity" + suffix] = projected + (scale - 1.0) * beside
     return moved
 
@@ -86,9 +87,9 @@ def struck(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twi
     (Kelvin)."""
     state, surfaces = dict(resting_state(target.surfaces, mesh, pose, twist)), target.surfaces
     node_points, every = target.numbering.node_points(mesh.geometry), np.ones(len(state["twist"]), dtype=bool)
-    held = surfaces.prescribed(0.0, node_points, pose.position, state["twist"], every)
+    prescribed = surfaces.prescribed_velocity(0.0, node_points, pose.position, state["twist"], every)
     projection = target.projection(mesh.geometry, pose.position)
-    least = projection.nearest(np.zeros_like(held), _start_tolerance(tolerance), held, held)
+    least = projection.nearest(np.zeros_like(prescribed), _start_tolerance(tolerance), prescribed, prescribed)
     state["velocity"] = state["velocity_previous"] = least
     return state, kinetic_energy(target, mesh.geometry, least)
 
@@ -99,7 +100,7 @@ def project(
     """The divergence-free velocity nearest to ``velocity`` in L², unchanged on bodies and prescribed faces, solved
     better than steps of this ``tolerance``.
 
-    ``target`` takes all bodies as controlled.
+    ``target`` takes all bodies as prescribed.
     """
     return target.projection(points, position).nearest(velocity, _start_tolerance(tolerance), velocity)
 
@@ -111,17 +112,17 @@ def _start_tolerance(tolerance: float) -> float:
 def _rotational_part(
     projection: Projection,
     velocity: FloatArray,
-    held: FloatArray,
+    prescribed: FloatArray,
     square: float,
     tolerance: float,
     guess: FloatArray,
 ) -> tuple[float, FloatArray]:
-    """Scale of `_scale`, and the difference (nodes, d) of a ``velocity`` from the potential flow with the same ``held``
-    values, from a ``guess`` onwards; the potential flow has the residual that ``tolerance`` asks for."""
-    potential = projection.nearest(held, _LOOSE, velocity - guess)
+    """Scale of `_scale`, and the difference (nodes, d) of a ``velocity`` from the potential flow with the same
+    ``prescribed`` values, from a ``guess`` onwards; the potential flow has the residual that ``tolerance`` asks for."""
+    potential = projection.nearest(prescribed, _LOOSE, velocity - guess)
     scale = _scale(projection, velocity, velocity - potential, square)
     if _LOOSE * abs(scale - 1.0) > _OF_STATE * tolerance:
-        potential = projection.nearest(held, _OF_STATE * tolerance / abs(scale - 1.0), potential)
+        potential = projection.nearest(prescribed, _OF_STATE * tolerance / abs(scale - 1.0), potential)
         scale = _scale(projection, velocity, velocity - potential, square)
     return scale, velocity - potential
 

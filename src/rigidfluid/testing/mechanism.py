@@ -140,11 +140,12 @@ class MechanismContract:
 
             rigid = jacobian(kinematics) @ flat(twist).ravel()
             scale = self._length(mechanism)
-            self._same_slopes(rigid.reshape(kinematics.given.shape), _difference(moved, 0.0), scale)
+            self._same_slopes(rigid.reshape(kinematics.relative_twist.shape), _difference(moved, 0.0), scale)
             by_time = _difference(lambda time: carried.poses(pose, time), time)
-            self._same_slopes(kinematics.given, by_time, scale)
+            self._same_slopes(kinematics.relative_twist, by_time, scale)
             both = flat(kinematics.component_twist(twist))
-            np.testing.assert_allclose(both, rigid.reshape(both.shape) + kinematics.given, atol=self.tolerance * scale)
+            expected = rigid.reshape(both.shape) + kinematics.relative_twist
+            np.testing.assert_allclose(both, expected, atol=self.tolerance * scale)
 
     def test_wrenches_do_the_same_work_on_the_whole(self, mechanism: Mechanism) -> None:
         """w · G u = Gᵀw · u."""
@@ -152,7 +153,7 @@ class MechanismContract:
         random, d = np.random.default_rng(5), mechanism.dimension
         for time in self.times:
             kinematics = carried.kinematics(pose, time)
-            rows = random.normal(size=kinematics.given.shape)
+            rows = random.normal(size=kinematics.relative_twist.shape)
             on_whole = flat(kinematics.motion_wrench(Wrench(rows[:, :d], rows[:, d:])))
             expected = jacobian(kinematics).T @ rows.ravel()
             scale = np.abs(expected).max()

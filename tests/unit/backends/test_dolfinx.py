@@ -155,14 +155,14 @@ def test_linear_functions_have_what_is_linear_along_each_edge():
     run = after(scene_from_dict({**BALLS, "fluid": BALLS["fluid"] | {"backend": "dolfinx"}}), 1)
     discretisation = run.system.backend._latest[1].inner
     constraint, space = discretisation._constraint, discretisation._topology.space
-    operator = constraint.operator(space.numbering.node_points(run.state.mesh.geometry), run.state.pose.position)
-    basis = linear_functions(constraint, operator)
+    constraint_matrix = constraint.matrix(space.numbering.node_points(run.state.mesh.geometry), run.state.pose.position)
+    basis = linear_functions(constraint, constraint_matrix)
     coarse, fine = basis.createVecs()
     coarse.array[:] = np.random.default_rng(0).normal(size=coarse.size)
     basis.mult(coarse, fine)
-    whole, everything = operator.createVecs()
+    whole, everything = constraint_matrix.createVecs()
     whole.array[: fine.size] = fine.array
-    operator.mult(whole, everything)
+    constraint_matrix.mult(whole, everything)
     velocity = space.velocities(everything.array[: space.owned_nodes.size * 3])
     vertices, free = space.numbering.vertices, discretisation.surfaces.velocity_free
     expected = space.numbering.interpolate_to_nodes(velocity[:vertices])

@@ -61,8 +61,8 @@ def uncontrolled(step: float, previous: float | None, pose: Pose, matrix: FloatA
         points=None,
         mass_matrix=matrix,
         load=load,
-        controlled=np.zeros(len(load), dtype=bool),
-        controlled_twist=np.zeros_like(load),
+        prescribed=np.zeros(len(load), dtype=bool),
+        prescribed_twist=np.zeros_like(load),
         impulse=np.zeros_like(load),
         load_scale=0.0,
         turning=np.zeros_like(load),
@@ -229,7 +229,7 @@ def test_dry_bounce_takes_the_known_time() -> None:
     assert times[1] - times[0] == pytest.approx(contact_time(), rel=5e-3)
 
 
-def test_controlled_bodies_take_the_given_twist() -> None:
+def test_prescribed_bodies_take_the_given_twist() -> None:
     pose = Pose(np.zeros((2, 2)), np.zeros((2, 1)))
     step = Step(
         time=0.0,
@@ -239,8 +239,8 @@ def test_controlled_bodies_take_the_given_twist() -> None:
         points=None,
         mass_matrix=np.stack([np.zeros((3, 3)), 2 * np.eye(3)]),
         load=np.array([[9.0, 9.0, 9.0], [2.0, 4.0, 6.0]]),
-        controlled=np.array([True, False]),
-        controlled_twist=np.array([[7.0, 8.0, 9.0], [0.0, 0.0, 0.0]]),
+        prescribed=np.array([True, False]),
+        prescribed_twist=np.array([[7.0, 8.0, 9.0], [0.0, 0.0, 0.0]]),
         impulse=np.zeros((2, 3)),
         load_scale=0.0,
         turning=np.zeros((2, 3)),
@@ -252,14 +252,14 @@ def test_controlled_bodies_take_the_given_twist() -> None:
     assert advance.hydrodynamic_wrench.torque.shape == (2, 1)
 
 
-def test_bodies_answer_to_impulses_with_their_own_mass():
+def test_bodies_respond_to_impulses_with_their_own_mass():
     matrix = np.stack([3.0 * np.diag([2.0, 2.0, 0.5]), np.eye(3)])
     pose = Pose(np.zeros((2, 2)), np.zeros((2, 1)))
-    step = replace(uncontrolled(1.0, None, pose, matrix, np.zeros((2, 3))), controlled=np.array([False, True]))
+    step = replace(uncontrolled(1.0, None, pose, matrix, np.zeros((2, 3))), prescribed=np.array([False, True]))
     impulses = np.array([[[6.0, 0.0, 1.5], [1.0, 1.0, 1.0]]])
     mesh: Any = None
     response = Dry(PartOptions(), None).response(
         {}, mesh, replace(step, derivative=np.array([3.0, -3.0, 0.0])), impulses
     )
-    np.testing.assert_allclose(response.by_mass, [[[3.0, 0.0, 3.0], [0.0, 0.0, 0.0]]])
-    np.testing.assert_array_equal(response.by_step, response.by_mass)
+    np.testing.assert_allclose(response.inviscid, [[[3.0, 0.0, 3.0], [0.0, 0.0, 0.0]]])
+    np.testing.assert_array_equal(response.viscous, response.inviscid)

@@ -15,7 +15,7 @@ from mesh_tools import ball
 from rigidfluid.bodies.polygon import Polygon, PolygonOptions
 from rigidfluid.bodies.polyhedron import Polyhedron, PolyhedronOptions
 from rigidfluid.core.mechanics.added_mass import added_mass
-from rigidfluid.core.mechanics.leverage import most_leverage
+from rigidfluid.core.mechanics.rotational_factor import largest_rotational_factor
 from rigidfluid.core.mechanics.shapes import half_thickness, inscribed_radius
 from rigidfluid.errors import SceneError
 
@@ -67,12 +67,12 @@ def test_a_cube_has_the_inertia_of_the_text_book_about_any_axes(tmp_path: Path) 
     np.testing.assert_allclose(cube.unit_inertia, 0.25 * np.eye(3) / 6, atol=1e-7)
 
 
-def test_added_mass_and_leverage_of_a_thin_bar_follow_its_length() -> None:
+def test_added_mass_and_rotational_factor_of_a_thin_bar_follow_its_length() -> None:
     bar = polygon([(0.0, 0.0), (4.0, 0.0), (4.0, 0.04), (0.0, 0.04)])
     along, across = np.diag(added_mass(bar))
     assert across == pytest.approx(pi * 2.0**2, rel=0.3)  # of a plate, πl²/4
     assert along < 0.1 * bar.volume
-    assert most_leverage(bar) == pytest.approx(3.0, rel=1e-3)
+    assert largest_rotational_factor(bar) == pytest.approx(3.0, rel=1e-3)
 
 
 def test_a_turned_bar_has_the_same_added_mass_turned() -> None:

@@ -33,7 +33,7 @@ def matrix_of(numbering, points, flow, viscosity):
         flow=np.tile(flow, (numbering.nodes, 1)),
         position=none,
         mass_matrix=np.zeros((0, 3, 3)),
-        controlled=np.zeros(0, dtype=bool),
+        prescribed=np.zeros(0, dtype=bool),
         frame=np.zeros(d),
     )
 

@@ -1,4 +1,4 @@
-"""Forces of links from the answers of a step's matrix."""
+"""Forces of links from the responses of a step's matrix."""
 
 from types import SimpleNamespace
 

@@ -143,7 +143,7 @@ def test_it_is_what_pardiso_counts(scene):
     simulation = Simulation(scene)
     simulation.step()
     backend, mesh = simulation.system.backend, simulation.state.mesh
-    unknowns = backend.unknowns(mesh, simulation.system.controlled)
+    unknowns = backend.unknowns(mesh, simulation.system.prescribed)
     assert predicted_unknowns(len(mesh.cells), len(mesh.facets), scene.dimension) == pytest.approx(unknowns, rel=0.03)
     counted = 1024.0 * sum(backend._solvers["lu"].viscous._factors._iparm[[15, 16]])
     assert predicted_factors(unknowns, scene.dimension).bytes == pytest.approx(counted, rel=0.2)

@@ -40,10 +40,10 @@ def steps(request):
 
     def recorded(self, matrix):
         assembled = assemble(self, matrix)
-        masses = matrix.mass_matrix[~matrix.controlled]
-        operator = self._constraint.operator.copy()
-        built = self._reduced_matrix(assembled.stiffness).filled(assembled.stiffness, masses)
-        made.append((self, matrix, assembled.stiffness, masses, operator, built))
+        masses = matrix.mass_matrix[~matrix.prescribed]
+        constraint_matrix = self._constraint.matrix.copy()
+        built = self._reduced_matrix(assembled.system_matrix).filled(assembled.system_matrix, masses)
+        made.append((self, matrix, assembled.system_matrix, masses, constraint_matrix, built))
         return assembled
 
     with pytest.MonkeyPatch.context() as patch:
@@ -61,8 +61,8 @@ def pattern_of(matrix):
     return matrix.indptr.tobytes(), matrix.indices.tobytes()
 
 
-def expected(discretisation, stiffness, masses, operator):
-    product = (operator.T @ stiffness @ operator).tolil()
+def expected(discretisation, system_matrix, masses, constraint_matrix):
+    product = (constraint_matrix.T @ system_matrix @ constraint_matrix).tolil()
     start, width = discretisation._constraint.twist_start, masses.shape[1]
     for body, mass in enumerate(masses):
         place = slice(start + body * width, start + (body + 1) * width)
@@ -72,8 +72,8 @@ def expected(discretisation, stiffness, masses, operator):
 
 def test_it_is_the_product_and_the_masses(steps):
     discretisation, made = steps
-    for _, stiffness, masses, operator, built in made:
-        wanted = expected(discretisation, stiffness, masses, operator)
+    for _, system_matrix, masses, constraint_matrix, built in made:
+        wanted = expected(discretisation, system_matrix, masses, constraint_matrix)
         assert abs(built - wanted).max() < 1e-14 * abs(wanted).max()
 
 
@@ -87,16 +87,16 @@ def test_its_pattern_is_that_of_all_steps(steps):
 def test_zeros_in_p_and_in_k_stay_in_its_pattern(steps):
     """SciPy's product would lose them."""
     discretisation, made = steps
-    matrix, stiffness, masses, _, built = made[-1]
+    matrix, system_matrix, masses, _, built = made[-1]
     constraint = discretisation._constraint
     nodes = constraint.surfaces.body_nodes[0]
     position = matrix.position.copy()
     position[0] = matrix.node_points[nodes[0]]  # no arm, no turning
     constraint.place(matrix.node_points, position)
-    emptied = stiffness.copy()
+    emptied = system_matrix.copy()
     emptied.data[::7] = 0.0
-    reduced = discretisation._reduced_matrix(stiffness)
-    assert expected(discretisation, emptied, 0.0 * masses, constraint.operator).nnz < built.nnz
+    reduced = discretisation._reduced_matrix(system_matrix)
+    assert expected(discretisation, emptied, 0.0 * masses, constraint.matrix).nnz < built.nnz
     assert pattern_of(reduced.filled(emptied, 0.0 * masses)) == pattern_of(built)
 
 
@@ -111,12 +111,12 @@ def test_twists_of_bodies_apart_have_no_entries_in_common(steps):
 def test_without_viscosity_the_pattern_is_the_same(steps):
     """One order of elimination serves both."""
     discretisation, made = steps
-    matrix, _, masses, operator, built = made[-1]
+    matrix, _, masses, constraint_matrix, built = made[-1]
     still, none = np.zeros_like(matrix.flow), np.zeros(len(discretisation.numbering.cells))
     coefficients = Coefficients(matrix.inertia, 0.0, still, still, none)
-    stiffness = discretisation._assembly.matrix(matrix.points, coefficients)
+    system_matrix = discretisation._assembly.matrix(matrix.points, coefficients)
     discretisation._constraint.place(matrix.node_points, matrix.position)
-    inviscid = discretisation._reduced_matrix(stiffness).filled(stiffness, masses)
-    wanted = expected(discretisation, stiffness, masses, operator)
+    inviscid = discretisation._reduced_matrix(system_matrix).filled(system_matrix, masses)
+    wanted = expected(discretisation, system_matrix, masses, constraint_matrix)
     assert abs(inviscid - wanted).max() < 1e-14 * abs(wanted).max()
     assert pattern_of(inviscid) == pattern_of(built)

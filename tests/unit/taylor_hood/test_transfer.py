@@ -32,7 +32,7 @@ def spinning():
 
 
 def on(simulation, mesh):
-    return simulation.system.backend._discretisation(mesh, simulation.system.controlled)
+    return simulation.system.backend._discretisation(mesh, simulation.system.prescribed)
 
 
 def divergence(discretisation, points, velocity):
@@ -148,7 +148,7 @@ def test_a_blow_leaves_the_disk_its_velocity_and_the_energy_in_the_books():
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_the_operator_moves_a_bodys_nodes_rigidly(dimension):
+def test_the_constraint_matrix_moves_a_bodys_nodes_rigidly(dimension):
     """P, its transpose by hand and U + ω × r say the same."""
     rng = np.random.default_rng(0)
     size, count = {2: 3, 3: 6}[dimension], 5
@@ -164,7 +164,7 @@ def test_the_operator_moves_a_bodys_nodes_rigidly(dimension):
     constraint.place(points, position)
     everything = np.zeros(constraint.unknowns)
     everything[constraint.twist_start : constraint.twist_start + size] = twist
-    moved = (constraint.operator @ everything)[: numbering.nodes * dimension].reshape(-1, dimension)
+    moved = (constraint.matrix @ everything)[: numbering.nodes * dimension].reshape(-1, dimension)
     np.testing.assert_allclose(moved[:count], rigid_velocity(twist, points[:count] - position[0]), atol=1e-14)
     padded = np.concatenate([force.ravel(), np.zeros(numbering.vertices)])
     expected = (constraint.transposed @ padded)[constraint.twist_start :][:size]

@@ -62,7 +62,7 @@ def compared(system: System, steps: Sequence[float], pairs: Sequence[tuple[Sampl
 
 
 def _row(system: System, step: float, ours: Samples, theirs: Samples, finest: Samples) -> Row:
-    mass, inertia = system.mass * ~system.controlled, system.inertia[:, 0, 0] * ~system.controlled
+    mass, inertia = system.mass * ~system.prescribed, system.inertia[:, 0, 0] * ~system.prescribed
     together, parted = _together(system, ours, theirs)
     ours_energy, theirs_energy = ours.energy(mass, inertia), theirs.energy(mass, inertia)
     ours_momentum, theirs_momentum = ours.momentum(mass), theirs.momentum(mass)

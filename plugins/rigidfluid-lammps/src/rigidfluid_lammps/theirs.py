@@ -59,7 +59,7 @@ def build(engine: Any, system: System, sorts: Kinds, folder: Path) -> None:
 def _create_bodies(engine: Any, system: System, sorts: Kinds) -> None:
     """Balls, numbered from 1 on as bodies are, and then their ballast where they are rigid bodies."""
     count, d = system.pose.position.shape
-    ballast = np.flatnonzero(~system.controlled) if rubs(system.law) else np.zeros(0, dtype=np.int64)
+    ballast = np.flatnonzero(~system.prescribed) if rubs(system.law) else np.zeros(0, dtype=np.int64)
     bodies = np.concatenate([np.arange(count), ballast])
     numbers = np.concatenate([np.arange(count), count + ballast]) + 1
     types = np.concatenate([sorts.number, np.full(len(ballast), ballast_type(sorts))])

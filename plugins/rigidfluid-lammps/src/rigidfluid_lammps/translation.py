@@ -78,7 +78,7 @@ def motion(system: System, kinds: Kinds, bodies_file: Path | None) -> Iterator[s
     that ``bodies_file`` holds, since LAMMPS would take that of the enlarged ball; it refuses rigid bodies of one
     particle, so each has a point without force inside it, its ballast.
     """
-    held = np.flatnonzero(system.controlled) + 1
+    held = np.flatnonzero(system.prescribed) + 1
     if len(held):
         yield f"group held id {' '.join(map(str, held))}"
         yield "group free subtract all held"
@@ -102,7 +102,7 @@ def motion(system: System, kinds: Kinds, bodies_file: Path | None) -> Iterator[s
 
 def write_bodies(path: Path, system: System) -> None:
     """Mass, inertia and motion of each free body, for ``fix rigid``."""
-    free = np.flatnonzero(~system.controlled)
+    free = np.flatnonzero(~system.prescribed)
     rows = [str(len(free))]
     for i in free:
         inertia = float(system.inertia[i, 0, 0])

@@ -53,11 +53,11 @@ class Dolfinx(TaylorHoodBackend):
             return super().extension(mesh, stiffness, held)
         return DistributedExtension(self._topology_of(self.numbering_of(mesh), mesh).space, stiffness, held)
 
-    def discretise(self, numbering: Numbering, mesh: Mesh, controlled: BoolArray) -> Discretisation:
+    def discretise(self, numbering: Numbering, mesh: Mesh, prescribed: BoolArray) -> Discretisation:
         from rigidfluid.backends.dolfinx.discretisation import PetscDiscretisation
 
         topology = self._topology_of(numbering, mesh)
-        return PetscDiscretisation(self.problem, topology, self._solvers, mesh, controlled)
+        return PetscDiscretisation(self.problem, topology, self._solvers, mesh, prescribed)
 
     def drop_factors(self) -> None:
         self._solvers.viscous.forget()

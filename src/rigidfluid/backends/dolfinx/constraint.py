@@ -1,4 +1,4 @@
-"""The operator P of `rigidfluid.taylor_hood.constraint`, distributed.
+"""The constraint matrix P of `rigidfluid.taylor_hood.constraint`, distributed.
 
 Columns of each process are its own free velocities first, next all twists on the root, and then its free pressures.
 """
@@ -18,16 +18,16 @@ from rigidfluid.taylor_hood.surfaces import Surfaces, joined
 
 
 class DistributedConstraint:
-    """Free unknowns on one topology, and P as a PETSc matrix; motions that are ``controlled`` (N,) have no unknowns.
+    """Free unknowns on one topology, and P as a PETSc matrix; motions that are ``prescribed`` (N,) have no unknowns.
 
     ``pressure_pin``: a vertex of this process whose pressure is zero, None elsewhere. ``velocity_free`` says which of
     the process' own velocities are free.
     """
 
-    def __init__(self, space: Space, surfaces: Surfaces, controlled: BoolArray, pressure_pin: int | None) -> None:
+    def __init__(self, space: Space, surfaces: Surfaces, prescribed: BoolArray, pressure_pin: int | None) -> None:
         self.space, ranks = space, surfaces.ranks
         d = space.numbering.dimension
-        self._free_motions = np.flatnonzero(~controlled)
+        self._free_motions = np.flatnonzero(~prescribed)
         self.velocity_free = surfaces.velocity_free[space.owned_nodes].ravel()
         self._pressure_free = space.owned_vertices != (-1 if pressure_pin is None else pressure_pin)
         self.velocities, self.pressures = int(self.velocity_free.sum()), int(self._pressure_free.sum())
@@ -42,9 +42,9 @@ class DistributedConstraint:
         place[space.owned_nodes] = np.arange(len(space.owned_nodes))
         nodes, carrier = joined([surfaces.motion_nodes[motion] for motion in self._free_motions])
         owned = place[nodes] >= 0
-        self._carried, self._carrier = place[nodes[owned]], carrier[owned]
+        self._slaved, self._carrier = place[nodes[owned]], carrier[owned]
         self._width = width
-        self._operator: Any = None
+        self._matrix: Any = None
         self._lay_out()
 
     @property
@@ -63,22 +63,22 @@ class DistributedConstraint:
         at_vertices = np.repeat(self.space.owned_nodes < self.space.numbering.vertices, self.space.numbering.dimension)
         return np.concatenate([at_vertices[self.velocity_free], np.ones(self.twists, dtype=bool)])
 
-    def operator(self, node_points: FloatArray, position: FloatArray) -> Any:
+    def matrix(self, node_points: FloatArray, position: FloatArray) -> Any:
         """P for nodes at ``node_points`` (nodes, d) and motions centred at ``position`` (N, d).
 
         One matrix is filled again and again, as products with it are told from others by it.
         """
         d = self.space.numbering.dimension
-        arm = node_points[self.space.owned_nodes[self._carried]] - position[self._free_motions][self._carrier]
+        arm = node_points[self.space.owned_nodes[self._slaved]] - position[self._free_motions][self._carrier]
         ones = np.ones(len(self._order) - len(CROSS[d]) * len(arm))
         data = np.concatenate([ones, *(sign * arm[:, c] for _, _, c, sign in CROSS[d])])[self._order]
-        if self._operator is None:
+        if self._matrix is None:
             sizes = (self.rows, None), (self.columns, None)
-            self._operator = PETSc.Mat().createAIJ(sizes, csr=(*self._pattern, data), comm=self.space.communicator)
+            self._matrix = PETSc.Mat().createAIJ(sizes, csr=(*self._pattern, data), comm=self.space.communicator)
         else:
-            self._operator.setValuesCSR(*self._pattern, data)
-        self._operator.assemble()
-        return self._operator
+            self._matrix.setValuesCSR(*self._pattern, data)
+        self._matrix.assemble()
+        return self._matrix
 
     def reduced(self, velocity: FloatArray, twist: FloatArray, pressure: FloatArray) -> FloatArray:
         """This process' unknowns from fields on nodes and vertices and all motions' twists (N, d+k)."""
@@ -94,7 +94,7 @@ class DistributedConstraint:
 
     def _lay_out(self) -> None:
         """Lay out the rows of P, and the order of its values: ones of free unknowns, U and ω × r of u = U + ω × r."""
-        d, at, first = self.space.numbering.dimension, self._carried, self._first_twist + self._width * self._carrier
+        d, at, first = self.space.numbering.dimension, self._slaved, self._first_twist + self._width * self._carrier
         free, number = self._free_columns()
         row = np.concatenate([free, *(at * d + a for a in range(d)), *(at * d + a for a, *_ in CROSS[d])])
         column = np.concatenate([number, *(first + a for a in range(d)), *(first + d + b for _, b, *_ in CROSS[d])])

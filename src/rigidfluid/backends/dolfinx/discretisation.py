@@ -23,11 +23,11 @@ from rigidfluid.taylor_hood.coupled_projection import CoupledProjection
 from rigidfluid.taylor_hood.lagged_solver import Operator
 from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.solvers import Solvers
-from rigidfluid.taylor_hood.surfaces import Surfaces, pinned_vertex
+from rigidfluid.taylor_hood.surfaces import Surfaces, pressure_pin_vertex
 
 
 class Topology:
-    """Data of one topology, whichever bodies are controlled: the space, its forms and the matrix K."""
+    """Data of one topology, whichever bodies are prescribed: the space, its forms and the matrix K."""
 
     def __init__(self, numbering: Numbering, mesh: Mesh) -> None:
         self.numbering = numbering
@@ -50,7 +50,7 @@ class Topology:
 
 
 class PetscDiscretisation:
-    """Pᵀ K P on MPI's processes, solved by a Krylov method; motions that are ``controlled`` (N,) have a prescribed
+    """Pᵀ K P on MPI's processes, solved by a Krylov method; motions that are ``prescribed`` (N,) have a prescribed
     twist.
 
     The ``solvers`` are kept from topology to topology, and must have been told to forget the last one.
@@ -62,16 +62,16 @@ class PetscDiscretisation:
         topology: Topology,
         solvers: Solvers[Krylov],
         mesh: Mesh,
-        controlled: BoolArray,
+        prescribed: BoolArray,
     ) -> None:
         self.problem = problem
         self.numbering = topology.numbering
         self.surfaces = Surfaces(topology.numbering, mesh, problem.conditions, problem.carrier)
         self._topology, self._solvers = topology, solvers
-        is_pinned = self.surfaces.enclosed and isinstance(solvers.viscous, LaggedLU)
-        pressure_pin = pinned_vertex(self.surfaces, mesh) if is_pinned else None
-        self._constraint = DistributedConstraint(topology.space, self.surfaces, controlled, pressure_pin)
-        self._pinned = pressure_pin
+        has_pin = self.surfaces.enclosed and isinstance(solvers.viscous, LaggedLU)
+        pressure_pin = pressure_pin_vertex(self.surfaces, mesh) if has_pin else None
+        self._constraint = DistributedConstraint(topology.space, self.surfaces, prescribed, pressure_pin)
+        self._pressure_pin = pressure_pin
 
     @property
     def unknowns(self) -> int:
@@ -95,14 +95,14 @@ class PetscDiscretisation:
     def solve(self, system: CoupledSystem, tolerance: float) -> Solution:
         """Solve Pᵀ(K(P x + given - frame) - load) + (M x - L on the twists) = 0 from the guess onwards."""
         s, space, constraint = system, self._topology.space, self._constraint
-        reduced, free = self._reduced(s.matrix), ~s.matrix.controlled
+        reduced, free = self._reduced(s.matrix), ~s.matrix.prescribed
         none = np.zeros(len(space.owned_vertices))
-        given = np.concatenate([s.given[space.owned_nodes].ravel(), none])
+        given = np.concatenate([s.prescribed[space.owned_nodes].ravel(), none])
         given -= np.concatenate([np.tile(s.matrix.frame, len(space.owned_nodes)), none])
         load = np.concatenate([space.owned_sums(s.load), none])
         right_side = reduced.collect(load - reduced.times(given))
         right_side[constraint.twist_slice] += s.body_load[free].ravel()[: constraint.twists]
-        guess = constraint.reduced(s.velocity, s.twist, s.pressure - self._pinned_pressure(s.pressure))
+        guess = constraint.reduced(s.velocity, s.twist, s.pressure - self._pressure_at_pin(s.pressure))
         scale = max(self._solvers.viscous.norm(right_side), s.scale)
         residual = right_side - reduced.apply(guess)
         enough = tolerance * scale
@@ -113,7 +113,7 @@ class PetscDiscretisation:
         responses = self._impulse_response(self._reduced(matrix), matrix, wrenches, tolerance)
         found = np.zeros_like(wrenches)
         on_root = responses[self._constraint.twist_slice]
-        found[~matrix.controlled] = self.surfaces.ranks.bcast(on_root).reshape(-1, *wrenches.shape[1:])
+        found[~matrix.prescribed] = self.surfaces.ranks.bcast(on_root).reshape(-1, *wrenches.shape[1:])
         return found
 
     def velocity_response(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
@@ -128,7 +128,7 @@ class PetscDiscretisation:
         solver = self._solvers.select(matrix.viscosity)
         constraint = self._constraint
         right_sides = np.zeros((constraint.columns, wrenches.shape[2]))
-        on_bodies = wrenches[~matrix.controlled].reshape(-1, wrenches.shape[2])
+        on_bodies = wrenches[~matrix.prescribed].reshape(-1, wrenches.shape[2])
         right_sides[constraint.twist_slice] = on_bodies[: constraint.twists]
         return solver.solve_columns(_operator(reduced), right_sides, tolerance)
 
@@ -139,14 +139,14 @@ class PetscDiscretisation:
         topology.space.move(m.points)
         coefficients = coefficients_of(self.numbering, m)
         topology.forms.assemble(topology.matrix, coefficients)
-        operator = constraint.operator(m.node_points, m.position)
-        inertia = block_diag(*m.mass_matrix[~m.controlled]) if constraint.twists else np.zeros((0, 0))
+        constraint_matrix = constraint.matrix(m.node_points, m.position)
+        inertia = block_diag(*m.mass_matrix[~m.prescribed]) if constraint.twists else np.zeros((0, 0))
         schur = partial(schur_data, topology.space, topology.forms, self.surfaces, coefficients)
-        return Reduced(constraint, topology.matrix, operator, inertia, cache(schur))
+        return Reduced(constraint, topology.matrix, constraint_matrix, inertia, cache(schur))
 
-    def _pinned_pressure(self, pressure: FloatArray) -> float:
-        """The guess's ``pressure`` at the vertex where it is pinned to zero; 0 for solvers that need no such vertex."""
-        own = 0.0 if self._pinned is None else float(pressure[self._pinned])
+    def _pressure_at_pin(self, pressure: FloatArray) -> float:
+        """The guess's ``pressure`` at the pressure pin, where it is zero; 0 for solvers that need no such vertex."""
+        own = 0.0 if self._pressure_pin is None else float(pressure[self._pressure_pin])
         return float(self.surfaces.ranks.sum(own))
 
     def _solution(
@@ -156,10 +156,10 @@ class PetscDiscretisation:
         space, constraint, ranks = self._topology.space, self._constraint, self.surfaces.ranks
         everything = reduced.expand(x) + given
         size = space.owned_nodes.size * space.numbering.dimension
-        reaction = np.zeros_like(system.given)
-        reaction[space.owned_nodes] = (reduced.times(everything) - load)[:size].reshape(-1, system.given.shape[1])
+        reaction = np.zeros_like(system.prescribed)
+        reaction[space.owned_nodes] = (reduced.times(everything) - load)[:size].reshape(-1, system.prescribed.shape[1])
         twist = system.twist.copy()
-        free = ~system.matrix.controlled
+        free = ~system.matrix.prescribed
         twist[free] = ranks.bcast(x[constraint.twist_slice]).reshape(-1, twist.shape[1])
         velocity = space.velocities(everything[:size]) + system.matrix.frame
         return Solution(velocity, space.pressures(everything[size:]), twist, reaction)

@@ -197,7 +197,7 @@ class LaggedSchur(Krylov):
         velocity, pressure = ksp.getPC().getFieldSplitSchurGetSubKSP()
         pressure.getPC().setPythonContext(CahouetChabard(matrix.schur()))
         if velocity.getPC().getType() == "mg":  # the scene may have chosen another
-            _two_levels(velocity, linear_functions(matrix.constraint, matrix.operator))
+            _two_levels(velocity, linear_functions(matrix.constraint, matrix.constraint_matrix))
         self._drop_whole(ksp)
 
     def _drop_whole(self, ksp: Any) -> None:

@@ -11,16 +11,16 @@ from scipy import sparse
 from rigidfluid.backends.dolfinx.constraint import DistributedConstraint
 
 
-def linear_functions(constraint: DistributedConstraint, operator: Any) -> Any:
+def linear_functions(constraint: DistributedConstraint, constraint_matrix: Any) -> Any:
     """Free velocities and twists by those at vertices and by twists: half-way along an edge is the mean of its ends.
 
-    ``operator`` is the constraint's P, which gives vertices on bodies their velocity.
+    ``constraint_matrix`` is the constraint's P, which gives vertices on bodies their velocity.
     """
-    comm, moving = operator.comm, constraint.velocities + constraint.twists
-    halves = _halves(constraint, operator.getOwnershipRange()[0])
+    comm, moving = constraint_matrix.comm, constraint.velocities + constraint.twists
+    halves = _halves(constraint, constraint_matrix.getOwnershipRange()[0])
     csr = halves.indptr.astype(PETSc.IntType), halves.indices.astype(PETSc.IntType), halves.data
     mean = PETSc.Mat().createAIJ(((moving, None), (constraint.rows, None)), csr=csr, comm=comm)
-    by_all = mean.matMult(operator)
+    by_all = mean.matMult(constraint_matrix)
     rows = PETSc.IS().createStride(moving, first=by_all.getOwnershipRange()[0], step=1, comm=comm)
     kept = constraint.first_column + np.flatnonzero(constraint.is_coarse)
     found = by_all.createSubMatrix(rows, PETSc.IS().createGeneral(kept.astype(PETSc.IntType), comm=comm))

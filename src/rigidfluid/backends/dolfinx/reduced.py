@@ -18,14 +18,14 @@ from rigidfluid.core.geometry.arrays import FloatArray
 
 @dataclass(frozen=True, eq=False)
 class Reduced:
-    """``matrix`` K and ``operator`` P of one step, ``inertia`` (t, t) of the free bodies' twists.
+    """``matrix`` K and ``constraint_matrix`` P of one step, ``inertia`` (t, t) of the free bodies' twists.
 
     ``schur()``: data of the Schur complement of the pressures; called by all processes together.
     """
 
     constraint: DistributedConstraint
     matrix: Any
-    operator: Any
+    constraint_matrix: Any
     inertia: FloatArray
     schur: Callable[[], SchurData]
 
@@ -33,9 +33,9 @@ class Reduced:
         """(Pᵀ K P + inertia) x, this process' unknowns (columns,)."""
         given, everything, image, result = self._vectors
         given.array[:] = x
-        self.operator.mult(given, everything)
+        self.constraint_matrix.mult(given, everything)
         self.matrix.mult(everything, image)
-        self.operator.multTranspose(image, result)
+        self.constraint_matrix.multTranspose(image, result)
         found: FloatArray = result.array.copy()
         twists = self.constraint.twist_slice
         if twists.stop > twists.start:
@@ -46,14 +46,14 @@ class Reduced:
         """P x, of this process' velocities and pressures."""
         given, everything, _, _ = self._vectors
         given.array[:] = x
-        self.operator.mult(given, everything)
+        self.constraint_matrix.mult(given, everything)
         return np.asarray(everything.array.copy())
 
     def collect(self, forces: FloatArray) -> FloatArray:
         """Pᵀ of forces on this process' velocities and pressures."""
         _, _, image, result = self._vectors
         image.array[:] = forces
-        self.operator.multTranspose(image, result)
+        self.constraint_matrix.multTranspose(image, result)
         return np.asarray(result.array.copy())
 
     def times(self, everything: FloatArray) -> FloatArray:
@@ -65,7 +65,7 @@ class Reduced:
 
     def to_petsc(self, before: Any = None) -> Any:
         """A PETSc matrix, in the place of one that was made ``before`` with the same constraint, if there is one."""
-        made = projected(self.matrix, self.operator, before)
+        made = projected(self.matrix, self.constraint_matrix, before)
         made.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
         twists = self.constraint.twist_slice
         numbers = np.arange(twists.start, twists.stop, dtype=PETSc.IntType) + self.constraint.first_column
@@ -77,5 +77,5 @@ class Reduced:
 
     @cached_property
     def _vectors(self) -> tuple[Any, Any, Any, Any]:
-        everything, reduced = self.matrix.createVecRight(), self.operator.createVecRight()
+        everything, reduced = self.matrix.createVecRight(), self.constraint_matrix.createVecRight()
         return reduced, everything, everything.duplicate(), reduced.duplicate()

@@ -42,12 +42,12 @@ class BodyStep:
 
 
 def arrived(
-    movement: BodyDynamics, impulse: Wrench, dissipated: float, actuator_work: float, count: int
+    dynamics: BodyDynamics, impulse: Wrench, dissipated: float, actuator_work: float, count: int
 ) -> BodyStep:
-    """Result where ``movement`` is at the end of a step, or of a part of it, after ``count`` substeps."""
-    motions = movement.motions(impulse)
+    """Result where ``dynamics`` is at the end of a step, or of a part of it, after ``count`` substeps."""
+    motions = dynamics.motions(impulse)
     work = dissipated, actuator_work
-    return BodyStep(movement.pose, movement.twist, motions, impulse, *work, count, unloaded(motions.pose))
+    return BodyStep(dynamics.pose, dynamics.twist, motions, impulse, *work, count, unloaded(motions.pose))
 
 
 def first_step_again(system: System, state: State, end_twist: Twist, end: float, size: float) -> BodyStep:

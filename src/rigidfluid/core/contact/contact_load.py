@@ -27,33 +27,33 @@ class ContactLoad(NamedTuple):
     actuator_work: float
 
 
-def contact_load(system: System, law: ForceLaw, contacts: Contacts, movement: BodyDynamics) -> ContactLoad:
+def contact_load(system: System, law: ForceLaw, contacts: Contacts, dynamics: BodyDynamics) -> ContactLoad:
     """Loads of the ``contacts`` on the bodies, by the ``law`` and its dampers."""
     if len(contacts) == 0:
-        return ContactLoad(nothing(movement.pose), None, 0.0, 0.0)
+        return ContactLoad(nothing(dynamics.pose), None, 0.0, 0.0)
     force, damping, loss = law.force(contacts), None, 0.0
     if law.dissipative:
-        motion = relative_motion(contacts, movement, system.wall_velocity)
+        motion = relative_motion(contacts, dynamics, system.wall_velocity)
         damping = law.damping(contacts, motion)
         force, loss = force + damping, -float(np.sum(damping * motion.velocity))
-    wrench, actuator_work = contact_wrench(contacts, force, movement.pose), 0.0
-    driven = driven_bodies(system)
-    if driven.any():
-        actuator_work = -float(power(wrench, movement.prescribed_twist(system.motions.controlled))[driven].sum())
+    wrench, actuator_work = contact_wrench(contacts, force, dynamics.pose), 0.0
+    moved = prescribed_bodies(system)
+    if moved.any():
+        actuator_work = -float(power(wrench, dynamics.prescribed_part(system.motions.prescribed))[moved].sum())
     if system.wall_velocity is not None:
         actuator_work += float(np.sum(force * system.wall_velocity(contacts.body_b, middle(contacts))))
     return ContactLoad(wrench, damping, loss, actuator_work)
 
 
-def damping_loss(system: System, contacts: Contacts, movement: BodyDynamics, damping: FloatArray | None) -> float:
+def damping_loss(system: System, contacts: Contacts, dynamics: BodyDynamics, damping: FloatArray | None) -> float:
     """Power that the dampers take, with the velocities half-way through their kick, of which each of two substeps has a
     half: times the substep it is the loss in the whole kick [energy/time]."""
     if damping is None:
         return 0.0
-    return -float(np.sum(damping * relative_motion(contacts, movement, system.wall_velocity).velocity))
+    return -float(np.sum(damping * relative_motion(contacts, dynamics, system.wall_velocity).velocity))
 
 
-def driven_bodies(system: System) -> BoolArray:
+def prescribed_bodies(system: System) -> BoolArray:
     """Whether a body's twist may have a prescribed part (n,): any body's where something moves relatively in a
     mechanism, as that part is zero in all others."""
-    return np.ones_like(system.controlled) if system.motions.driven else system.controlled
+    return np.ones_like(system.prescribed) if system.motions.driven else system.prescribed

@@ -43,7 +43,7 @@ class Problem:
     drag: FloatArray
     offset: FloatArray
 
-    def push(self, gap: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def law_force(self, gap: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Force f of the law and the drag at this gap (m,) [force], and -df/dg (m,) [force/length]."""
         force, slope = discrete_gradient(self.law, self.start, gap)
         return self.scale * force - self.drag * (gap + self.offset), self.scale * slope + self.drag
@@ -76,8 +76,8 @@ def contact_forces(problem: Problem, force: FloatArray, gap: FloatArray) -> tupl
     lacking = gap - (problem.free + problem.compliance @ force)
     lacking = np.where(np.abs(lacking) <= _tolerance(problem), 0.0, lacking)
     for _ in range(MOST_ITERATIONS):
-        push, slope = problem.push(gap)
-        rest = force - push
+        law_force, slope = problem.law_force(gap)
+        rest = force - law_force
         step = _solved(problem.compliance, slope, slope * lacking - rest)
         moved = problem.compliance @ step - lacking
         if np.all(np.abs(moved) <= _tolerance(problem)) and np.all(gap + moved > 0.0):
@@ -126,7 +126,7 @@ def _searched(
     """Part of a step at which the convex function no longer rises half as steeply as it falls at the start."""
 
     def slope(part: float) -> float:
-        return float(moved @ (force + part * step - problem.push(gap + part * moved)[0]))
+        return float(moved @ (force + part * step - problem.law_force(gap + part * moved)[0]))
 
     steepest = -slope(0.0)
     for _ in range(_HALVINGS):

@@ -11,21 +11,21 @@ from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.types import Contacts
 
 
-def delassus(contacts: Contacts, movement: BodyDynamics, time: float) -> sparse.csr_matrix:
+def delassus(contacts: Contacts, dynamics: BodyDynamics, time: float) -> sparse.csr_matrix:
     """Delassus matrix D = G M⁻¹ Gᵀ (m, m), symmetric and positive semidefinite, where G maps the bodies' twists to the
     rates of the gaps, for forces that last for ``time`` [1/mass].
 
-    Walls and prescribed bodies have no inverse mass; the bodies of ``movement`` are where the contacts are.
+    Walls and prescribed bodies have no inverse mass; the bodies of ``dynamics`` are where the contacts are.
     """
-    gap_rates = _gap_rates(contacts, movement)
-    return sparse.csr_matrix(gap_rates @ movement.inverse_masses(time) @ gap_rates.T)
+    gap_rates = _gap_rates(contacts, dynamics)
+    return sparse.csr_matrix(gap_rates @ dynamics.inverse_masses(time) @ gap_rates.T)
 
 
-def _gap_rates(contacts: Contacts, movement: BodyDynamics) -> sparse.csr_matrix:
+def _gap_rates(contacts: Contacts, dynamics: BodyDynamics) -> sparse.csr_matrix:
     """Matrix G (m, n·(d+k))."""
-    position = movement.pose.position
+    position = dynamics.pose.position
     count, dimension = position.shape
-    width = dimension + movement.twist.angular_velocity.shape[1]
+    width = dimension + dynamics.twist.angular_velocity.shape[1]
     point = middle(contacts)
     rows, columns, opening = [], [], []
     for sign, body in ((1.0, contacts.body_a), (-1.0, contacts.body_b)):

@@ -34,17 +34,17 @@ class PoseDetection(Detection):
     def on_shapes(self, contacts: Contacts, pose: Pose) -> Contacts:
         return contacts
 
-    def look_ahead(self, near: FollowedContacts, movement: BodyDynamics, size: float) -> Sight:
-        return self._look_ahead(movement, size)
+    def look_ahead(self, near: FollowedContacts, dynamics: BodyDynamics, size: float) -> Sight:
+        return self._look_ahead(dynamics, size)
 
-    def widened(self, sight: Sight, movement: BodyDynamics, size: float) -> Sight:
-        now = self._look_ahead(movement, size)
+    def widened(self, sight: Sight, dynamics: BodyDynamics, size: float) -> Sight:
+        now = self._look_ahead(dynamics, size)
         return now if now.reach > sight.reach else sight
 
     def followed(
-        self, near: FollowedContacts, law: ForceLaw, movement: BodyDynamics, size: float, reach: float
+        self, near: FollowedContacts, law: ForceLaw, dynamics: BodyDynamics, size: float, reach: float
     ) -> tuple[Contacts, FollowedContacts]:
-        pairs = self._foreseen(law, movement, size, reach)
+        pairs = self._foreseen(law, dynamics, size, reach)
         return pairs.start, pairs
 
     def has_missed(self, seen: Contacts, found: Contacts) -> bool:
@@ -66,16 +66,16 @@ class MeshDetection(Detection):
     def on_shapes(self, contacts: Contacts, pose: Pose) -> Contacts:
         return on_round_shapes(contacts, self._system.walls, pose)
 
-    def look_ahead(self, near: FollowedContacts, movement: BodyDynamics, size: float) -> Sight:
+    def look_ahead(self, near: FollowedContacts, dynamics: BodyDynamics, size: float) -> Sight:
         return Sight(near.extrapolate, np.inf, size)
 
-    def widened(self, sight: Sight, movement: BodyDynamics, size: float) -> Sight:
+    def widened(self, sight: Sight, dynamics: BodyDynamics, size: float) -> Sight:
         return sight
 
     def followed(
-        self, near: FollowedContacts, law: ForceLaw, movement: BodyDynamics, size: float, reach: float
+        self, near: FollowedContacts, law: ForceLaw, dynamics: BodyDynamics, size: float, reach: float
     ) -> tuple[Contacts, FollowedContacts]:
-        return near.extrapolate(movement.pose), near
+        return near.extrapolate(dynamics.pose), near
 
     def has_missed(self, seen: Contacts, found: Contacts) -> bool:
         """Whether a contact is in range that was beyond the detector's reach, or a pair has more than were seen."""

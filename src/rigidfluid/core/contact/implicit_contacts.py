@@ -55,7 +55,7 @@ class Encounter(NamedTuple, Generic[M]):
     """
 
     law: ForceLaw
-    movement: M
+    dynamics: M
     start: Contacts
     contacts_at: Callable[[Pose], Contacts]
     size: float
@@ -63,13 +63,13 @@ class Encounter(NamedTuple, Generic[M]):
 
 
 class Crossing(NamedTuple, Generic[M]):
-    """Result of a step: the bodies' ``movement`` at its end, the contacts' mean ``wrench``, the energy ``lost``, the
-    work ``driven`` into the bodies by sliding walls, and the energy ``stored`` in bodies and contacts [energy]."""
+    """Result of a step: the bodies' ``dynamics`` at its end, the contacts' mean ``wrench``, the energy ``lost``, the
+    ``wall_work`` done on the bodies by sliding walls, and the energy ``stored`` in bodies and contacts [energy]."""
 
-    movement: M
+    dynamics: M
     wrench: Wrench
     lost: float
-    driven: float
+    wall_work: float
     stored: float
 
 
@@ -84,7 +84,7 @@ def implicit_contact_step(encounter: Encounter[M]) -> Crossing[M]:
     with the mean velocity, across the surfaces implicitly, along them with that of the iteration before. The step is of
     second order where it resolves the contact, and keeps the energy at any length.
 
-    The encounter's movement is left as it is. StepRejected is raised if bodies would overlap, no forces are found, or
+    The encounter's dynamics is left as it is. StepRejected is raised if bodies would overlap, no forces are found, or
     bodies turn too far for the forces to keep the energy.
     """
     law, start, size, wall_velocity = encounter.law, encounter.start, encounter.size, encounter.wall_velocity
@@ -95,9 +95,9 @@ def implicit_contact_step(encounter: Encounter[M]) -> Crossing[M]:
         problem = Problem(law, start, free, iterate.compliance, iterate.scale, dampers.across, offset)
         force, gap = contact_forces(problem, force, gap)
         spring = (force + dampers.across * (gap + offset)) / iterate.scale
-        push = force[:, None] * iterate.middle.normal + dampers.along
+        total = force[:, None] * iterate.middle.normal + dampers.along
         before = iterate
-        acting = contact_wrench(iterate.middle, push, iterate.pose)
+        acting = contact_wrench(iterate.middle, total, iterate.pose)
         iterate = _evaluate(encounter, acting, iterate.place)
         used = dampers
         if update < MOST_FORCE_UPDATES:
@@ -107,13 +107,13 @@ def implicit_contact_step(encounter: Encounter[M]) -> Crossing[M]:
         wanted = (iterate.scale * spring - dampers.across * iterate.way)[
             :, None
         ] * iterate.middle.normal + dampers.along
-        if _converged(law, iterate, gap, wanted - push):
-            driven = 0.0
+        if _converged(law, iterate, gap, wanted - total):
+            wall_work = 0.0
             if wall_velocity is not None:
-                driven = size * float(np.sum(push * wall_velocity(start.body_b, centre(iterate.middle))))
+                wall_work = size * float(np.sum(total * wall_velocity(start.body_b, centre(iterate.middle))))
             stored = _most_stored(encounter, iterate)
             _refuse_to_create(encounter, iterate, before.scale * spring, stored)
-            return _crossing(iterate, used, size, driven, stored)
+            return _crossing(iterate, used, size, wall_work, stored)
         gap = iterate.gap
     raise _rejected(f"no forces after {MOST_UPDATES} updates of the normals")
 
@@ -121,12 +121,12 @@ def implicit_contact_step(encounter: Encounter[M]) -> Crossing[M]:
 class _Iterate(NamedTuple, Generic[M]):
     """Bodies and contacts under some forces.
 
-    ``movement`` at the end; ``pose``, ``place`` on the motions, contacts and mean motion in mid-step; ``way`` n·Δx and
+    ``dynamics`` at the end; ``pose``, ``place`` on the motions, contacts and mean motion in mid-step; ``way`` n·Δx and
     ``gap`` at the end (m,) [length]; ``scale`` (g₁ - g₀)/(n·Δx) (m,) [1]; ``compliance`` Δt²/2 D (m, m) [length/force];
     the ``wrench``.
     """
 
-    movement: M
+    dynamics: M
     pose: Pose
     place: Kinematics
     middle: Contacts
@@ -148,19 +148,19 @@ class _Dampers(NamedTuple):
 
 def _straight_on(encounter: Encounter[M]) -> _Iterate[M]:
     """First guess, which accepts overlaps: without contact forces, with all surfaces flat."""
-    _, movement, start, _, size, wall_velocity = encounter
-    trial, none = movement.copied(), nothing(movement.pose)
+    _, dynamics, start, _, size, wall_velocity = encounter
+    trial, none = dynamics.copied(), nothing(dynamics.pose)
     trial.kick(none, 0.5 * size)
     motion = relative_motion(start, trial, wall_velocity)
     way = size * _normal_part(motion.velocity, start)
-    scale, compliance = np.ones(len(start)), _compliance(start, movement, size)
-    place = movement.pose, movement.kinematics
+    scale, compliance = np.ones(len(start)), _compliance(start, dynamics, size)
+    place = dynamics.pose, dynamics.kinematics
     return _Iterate(trial, *place, start, motion, way, start.gap + way, scale, compliance, none)
 
 
 def _evaluate(encounter: Encounter[M], wrench: Wrench, place: Kinematics) -> _Iterate[M]:
-    law, movement, start, contacts_at, size, wall_velocity = encounter
-    trial = movement.copied()
+    law, dynamics, start, contacts_at, size, wall_velocity = encounter
+    trial = dynamics.copied()
     trial.kick(wrench, 0.5 * size, place)
     kicked = trial.motion_twist
     trial.drift(0.5 * size)
@@ -170,7 +170,7 @@ def _evaluate(encounter: Encounter[M], wrench: Wrench, place: Kinematics) -> _It
     drifted = trial.motion_twist
     trial.kick(wrench, 0.5 * size, place)
     drift = kicked, drifted
-    twist = _mean(drift if trial.resisted else (movement.motion_twist, *drift, trial.motion_twist))
+    twist = _mean(drift if trial.resisted else (dynamics.motion_twist, *drift, trial.motion_twist))
     velocity = relative_velocity(middle, pose, kinematics.component_twist(twist))
     if wall_velocity is not None:
         velocity -= wall_velocity(middle.body_b, centre(middle))
@@ -184,8 +184,8 @@ def _evaluate(encounter: Encounter[M], wrench: Wrench, place: Kinematics) -> _It
     return _Iterate(trial, pose, kinematics, middle, motion, way, gap, np.clip(scale, *_SCALES), compliance, wrench)
 
 
-def _compliance(contacts: Contacts, movement: BodyDynamics, size: float) -> Any:
-    matrix = 0.5 * size**2 * delassus(contacts, movement, 0.5 * size)
+def _compliance(contacts: Contacts, dynamics: BodyDynamics, size: float) -> Any:
+    matrix = 0.5 * size**2 * delassus(contacts, dynamics, 0.5 * size)
     return matrix.toarray() if len(contacts) <= MOST_DENSE else matrix
 
 
@@ -221,15 +221,15 @@ def _most_stored(encounter: Encounter[M], iterate: _Iterate[M]) -> float:
     end = replace(start, gap=iterate.gap)
     just_in = [replace(start, gap=np.full(len(start), JUST_IN * begin)) for begin in law.ranges]
     touching = [float(law.energy(contacts).max()) for contacts in just_in]
-    return max(_stored(law, encounter.movement, start), _stored(law, iterate.movement, end), *touching)
+    return max(_stored(law, encounter.dynamics, start), _stored(law, iterate.dynamics, end), *touching)
 
 
-def _stored(law: ForceLaw, movement: BodyDynamics, contacts: Contacts) -> float:
+def _stored(law: ForceLaw, dynamics: BodyDynamics, contacts: Contacts) -> float:
     """Kinetic energy of free bodies and potential energy of the contacts [energy]."""
-    twist, energy = movement.twist, float(law.energy(contacts).sum())
+    twist, energy = dynamics.twist, float(law.energy(contacts).sum())
     for velocity, inverse in (
-        (twist.velocity, movement.mobility),
-        (twist.angular_velocity, movement.inverse_inertia),
+        (twist.velocity, dynamics.inverse_mass),
+        (twist.angular_velocity, dynamics.inverse_inertia),
     ):
         free = inverse.any(axis=(1, 2))
         energy += 0.5 * float(np.einsum("ni,nij,nj->", velocity[free], np.linalg.inv(inverse[free]), velocity[free]))
@@ -245,12 +245,12 @@ def _refuse_to_create(encounter: Encounter[M], iterate: _Iterate[M], force: Floa
         raise _rejected(f"energy of {created:.1e} from nowhere, as bodies turn too far")
 
 
-def _crossing(iterate: _Iterate[M], dampers: _Dampers, size: float, driven: float, stored: float) -> Crossing[M]:
+def _crossing(iterate: _Iterate[M], dampers: _Dampers, size: float, wall_work: float, stored: float) -> Crossing[M]:
     """Result of a converged step; raise StepRejected if dampers that were not updated to the end would give energy."""
     lost = float(np.sum(dampers.across * iterate.way**2) - size * np.sum(dampers.along * iterate.motion.velocity))
     if lost < 0.0:
         raise _rejected("dampers that would give energy")
-    return Crossing(iterate.movement, iterate.wrench, lost, driven, stored)
+    return Crossing(iterate.dynamics, iterate.wrench, lost, wall_work, stored)
 
 
 def _normal_part(vector: FloatArray, contacts: Contacts) -> FloatArray:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TypeVar
 
 from rigidfluid.core.contact.body_step import BodyStep, add_wrench, arrived
-from rigidfluid.core.contact.contact_load import driven_bodies
+from rigidfluid.core.contact.contact_load import prescribed_bodies
 from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
 from rigidfluid.core.contact.implicit_contacts import KEPT, Encounter, implicit_contact_step
 from rigidfluid.core.contact.look_ahead import fastest_speed, foreseen
@@ -25,79 +25,79 @@ IMPLICIT_PARTS = 8
 """Number of implicit steps of the bodies in one step of a fluid."""
 
 
-def implicit_free(system: System, law: ForceLaw, movement: BodyDynamics, size: float) -> tuple[BodyStep, BodyDynamics]:
-    """Advance without a fluid, by one implicit step or as many as springs need; return also the movement at the end."""
+def implicit_free(system: System, law: ForceLaw, dynamics: BodyDynamics, size: float) -> tuple[BodyStep, BodyDynamics]:
+    """Advance without a fluid, by one implicit step or as many as springs need; return also the dynamics at the end."""
     parts = spring_parts(system, size)
-    path, movement = _implicit_or_free(system, law, movement, size / parts)
+    path, dynamics = _implicit_or_free(system, law, dynamics, size / parts)
     for _ in range(1, parts):
         before = path
-        path, movement = _implicit_or_free(system, law, movement, size / parts)
+        path, dynamics = _implicit_or_free(system, law, dynamics, size / parts)
         impulse = add_wrench(path.impulse, before.impulse, 1.0)
         path = replace(
             path,
-            motions=movement.motions(impulse),
+            motions=dynamics.motions(impulse),
             impulse=impulse,
             dissipated=path.dissipated + before.dissipated,
             actuator_work=path.actuator_work + before.actuator_work,
             substeps=path.substeps + before.substeps,
         )
-    return path, movement
+    return path, dynamics
 
 
 def _implicit_or_free(
-    system: System, law: ForceLaw, movement: BodyDynamics, size: float
+    system: System, law: ForceLaw, dynamics: BodyDynamics, size: float
 ) -> tuple[BodyStep, BodyDynamics]:
-    """Advance by one implicit step, or freely where nothing may come into range; return also the movement at its
+    """Advance by one implicit step, or freely where nothing may come into range; return also the dynamics at its
     end."""
-    contacts = foreseen(system, law, movement, size, 0.0)
+    contacts = foreseen(system, law, dynamics, size, 0.0)
     if len(contacts.start) == 0:
-        return fly_freely(system, movement, size), movement
-    return _implicit_step(system, law, movement, contacts.start, contacts, size)
+        return fly_freely(system, dynamics, size), dynamics
+    return _implicit_step(system, law, dynamics, contacts.start, contacts, size)
 
 
-def implicit_coupled(system: System, law: ForceLaw, movement: BodyDynamics, near: Contacts, size: float) -> BodyStep:
+def implicit_coupled(system: System, law: ForceLaw, dynamics: BodyDynamics, near: Contacts, size: float) -> BodyStep:
     """Advance in a fluid, by several implicit steps in one of the fluid's: an impact is then short beside that, and
     drag acts before and after it.
 
     In a single implicit step an impact would last as long as the fluid's step and work against drag all the while, and
     its impulse would be greater than the reduced mass alone asks for.
     """
-    part, impulse, lost, actuator_work = size / IMPLICIT_PARTS, nothing(movement.pose), 0.0, 0.0
-    at_start = ExtrapolatedContacts(near, movement.pose)
-    reach = max(float(near.gap.max()), law.range + 4.0 * fastest_speed(system, movement, size) * size)
+    part, impulse, lost, actuator_work = size / IMPLICIT_PARTS, nothing(dynamics.pose), 0.0, 0.0
+    at_start = ExtrapolatedContacts(near, dynamics.pose)
+    reach = max(float(near.gap.max()), law.range + 4.0 * fastest_speed(system, dynamics, size) * size)
     for _ in range(IMPLICIT_PARTS):
-        start, followed = system.detection.followed(at_start, law, movement, part, reach)
+        start, followed = system.detection.followed(at_start, law, dynamics, part, reach)
         if len(start) == 0:
-            fly_freely(system, movement, part)
+            fly_freely(system, dynamics, part)
             continue
-        path, movement = _implicit_step(system, law, movement, start, followed, part)
+        path, dynamics = _implicit_step(system, law, dynamics, start, followed, part)
         impulse = add_wrench(impulse, path.impulse, 1.0)
         lost, actuator_work = lost + path.dissipated, actuator_work + path.actuator_work
-    path = arrived(movement, impulse, lost, actuator_work, IMPLICIT_PARTS)
-    return replace(path, friction=movement.friction_loss)
+    path = arrived(dynamics, impulse, lost, actuator_work, IMPLICIT_PARTS)
+    return replace(path, friction=dynamics.friction_loss)
 
 
 def _implicit_step(
     system: System,
     law: ForceLaw,
-    movement: M,
+    dynamics: M,
     start: Contacts,
     followed: FollowedContacts,
     size: float,
 ) -> tuple[BodyStep, M]:
-    """Advance by one implicit step with the contacts ``followed``, at its start ``start``; return also the movement at
+    """Advance by one implicit step with the contacts ``followed``, at its start ``start``; return also the dynamics at
     its end."""
-    encounter = Encounter(law, movement, start, followed.extrapolate, size, system.wall_velocity)
+    encounter = Encounter(law, dynamics, start, followed.extrapolate, size, system.wall_velocity)
     crossing = implicit_contact_step(encounter)
-    end, wrench, lost, driven, stored = crossing
+    end, wrench, lost, wall_work, stored = crossing
     _refuse_unseen(law, followed, end.pose, KEPT * stored)
     impulse = Wrench(size * wrench.force, size * wrench.torque)
-    before, after = (each.prescribed_twist(system.motions.controlled) for each in (movement, end))
+    before, after = (each.prescribed_part(system.motions.prescribed) for each in (dynamics, end))
     mean = Twist(
         0.5 * (before.velocity + after.velocity),
         0.5 * (before.angular_velocity + after.angular_velocity),
     )
-    actuator_work = driven - float(power(impulse, mean)[driven_bodies(system)].sum())
+    actuator_work = wall_work - float(power(impulse, mean)[prescribed_bodies(system)].sum())
     return arrived(end, impulse, lost, actuator_work, 1), end
 
 

@@ -33,14 +33,14 @@ def near_contacts(system: System, state: State, start: float, size: float) -> Co
     return select(contacts, contacts.gap <= system.law.range + 2.0 * size * (speed + size * both))
 
 
-def look_ahead(system: System, movement: BodyDynamics, size: float) -> Sight:
+def look_ahead(system: System, dynamics: BodyDynamics, size: float) -> Sight:
     """Sight for a step of this ``size`` [time] at the present speeds, by a detector that needs no mesh; no farther than
     the law where a scene fixes the number of substeps, which are then not planned by contacts to come."""
     law_range = system.law_range
     if system.substeps:
         return Sight(_detection(system, law_range), law_range, size)
     largest = max(body.bounding_radius for body in system.bodies)
-    fastest = fastest_speed(system, movement, size)
+    fastest = fastest_speed(system, dynamics, size)
     ahead = min(2.0 * fastest * size, law_range + 2.0 * largest)
     reach = law_range + ahead
     return Sight(_detection(system, reach), reach, 0.5 * ahead / fastest if fastest > 0 else size)
@@ -57,32 +57,32 @@ def _detection(system: System, reach: float) -> Callable[[Pose], Contacts]:
     return contacts_at
 
 
-def foreseen(system: System, law: ForceLaw, movement: BodyDynamics, size: float, reach: float) -> TrackedPairs:
+def foreseen(system: System, law: ForceLaw, dynamics: BodyDynamics, size: float, reach: float) -> TrackedPairs:
     """Pairs that a step of this ``size`` [time] may bring into range, and at least those within ``reach`` [length].
 
     The speed allowed for is four times the fastest, as impacts may double that of both bodies, and twice the speed that
     bodies at rest, pressed together, may get from the energy of their contacts.
     """
-    reach = max(reach, law.range + 4.0 * fastest_speed(system, movement, size) * size)
-    contacts = TrackedPairs(system, movement.pose, reach)
-    released = _released(system, law, movement, contacts.start)
+    reach = max(reach, law.range + 4.0 * fastest_speed(system, dynamics, size) * size)
+    contacts = TrackedPairs(system, dynamics.pose, reach)
+    released = _released(system, law, dynamics, contacts.start)
     if released > 0.0:
-        contacts = TrackedPairs(system, movement.pose, reach + 2.0 * released * size)
+        contacts = TrackedPairs(system, dynamics.pose, reach + 2.0 * released * size)
     return contacts
 
 
-def _released(system: System, law: ForceLaw, movement: BodyDynamics, contacts: Contacts) -> float:
+def _released(system: System, law: ForceLaw, dynamics: BodyDynamics, contacts: Contacts) -> float:
     """Greatest speed of a surface point if a body got all energy that its contacts store [length/time]."""
     energy, stored = law.energy(contacts), np.zeros(len(system.surfaces))
     np.add.at(stored, contacts.body_a, energy)
     np.add.at(stored, contacts.body_b, energy)
-    straight, turning = (np.linalg.eigvalsh(each)[:, -1] for each in (movement.mobility, movement.inverse_inertia))
+    straight, turning = (np.linalg.eigvalsh(each)[:, -1] for each in (dynamics.inverse_mass, dynamics.inverse_inertia))
     inverse_mass = straight + system.arms**2 * turning
     return float(np.sqrt(2.0 * np.max(stored[: len(inverse_mass)] * inverse_mass)))
 
 
-def fastest_speed(system: System, movement: BodyDynamics, size: float) -> float:
+def fastest_speed(system: System, dynamics: BodyDynamics, size: float) -> float:
     """Bound of the speed of any surface point in a step of this ``size`` [time], contacts apart [length/time]."""
-    twist = movement.twist
+    twist = dynamics.twist
     turning = system.arms * np.linalg.norm(twist.angular_velocity, axis=1)
-    return float(np.max(np.linalg.norm(twist.velocity, axis=1) + turning + size * movement.max_acceleration(size)))
+    return float(np.max(np.linalg.norm(twist.velocity, axis=1) + turning + size * dynamics.max_acceleration(size)))

@@ -30,7 +30,7 @@ def body_classes(system: System) -> tuple[tuple[int, ...], ...]:
     found = defaultdict(list)
     for i in np.argsort(system.loads.speed, kind="stable").tolist():
         body = shape_key(system.bodies[i]), float(system.mass[i]), *system.weight[i].tolist()
-        found[(*body, bool(system.controlled[i]))].append(i)
+        found[(*body, bool(system.prescribed[i]))].append(i)
     return tuple(map(tuple, found.values()))
 
 
@@ -73,7 +73,7 @@ def facing_normal(system: System, body: int, shape: Surface) -> FloatArray:
 
 def free(system: System, bodies: Sequence[int]) -> list[int]:
     """Members of ``bodies`` whose twist is not prescribed."""
-    return [i for i in bodies if not system.controlled[i]]
+    return [i for i in bodies if not system.prescribed[i]]
 
 
 def pair_contacts(system: System, bodies: Sequence[int]) -> Contacts:

@@ -34,10 +34,10 @@ digit."""
 
 class Reach(NamedTuple):
     """Distance ``arms`` (n,) of the farthest surface point of each body from its centre of mass [length], and
-    ``leverage`` (n,) there [1], see `most_leverage`; zero for balls, which turn in their place."""
+    ``rotational_factor`` (n,) there [1], see `largest_rotational_factor`; zero for balls, which turn in their place."""
 
     arms: FloatArray
-    leverage: FloatArray
+    rotational_factor: FloatArray
 
 
 class Plan(NamedTuple):
@@ -51,7 +51,7 @@ class Plan(NamedTuple):
 def plan(
     law: ForceLaw,
     contacts: Contacts,
-    movement: BodyDynamics,
+    dynamics: BodyDynamics,
     reach: Reach,
     size: float,
     span: float,
@@ -70,12 +70,12 @@ def plan(
     """
     if len(contacts) == 0:
         return Plan(span, span)
-    pulled = _pair_values(movement.max_acceleration(span), contacts).sum(axis=1)
-    approach = _approach(law, contacts, movement, reach)
-    speed = approach.fastest + span * pulled
+    acceleration = _pair_values(dynamics.max_acceleration(span), contacts).sum(axis=1)
+    approach = _approach(law, contacts, dynamics, reach)
+    speed = approach.fastest + span * acceleration
     first = np.maximum(contacts.gap - law.range, 0.0) / np.maximum(speed, np.finfo(float).tiny)
-    creep = _creep(contacts, movement, reach, size) if quasi_steady else None
-    halvings = log2(max(size / _resolved(law, contacts, movement, approach, pulled, creep), 1.0))
+    creep = _creep(contacts, dynamics, reach, size) if quasi_steady else None
+    halvings = log2(max(size / _resolved(law, contacts, dynamics, approach, acceleration, creep), 1.0))
     substep = size / 2.0 ** ceil(halvings)
     free_flight = min(float(first.min()), span)
     return Plan(free_flight if free_flight > substep else 0.0, substep)
@@ -92,24 +92,24 @@ class _Approach(NamedTuple):
     parting: BoolArray
 
 
-def _approach(law: ForceLaw, contacts: Contacts, movement: BodyDynamics, reach: Reach) -> _Approach:
+def _approach(law: ForceLaw, contacts: Contacts, dynamics: BodyDynamics, reach: Reach) -> _Approach:
     """Approach in each contact: normals of balls turn with the line of centres; those of other shapes may turn
     anywhere."""
-    twist, arm = movement.twist, _pair_values(reach.arms, contacts)
+    twist, arm = dynamics.twist, _pair_values(reach.arms, contacts)
     spin = _pair_values(reach.arms * np.linalg.norm(twist.angular_velocity, axis=1), contacts)
     velocity = _relative(twist.velocity, contacts)
     opening = np.sum(velocity * contacts.normal, axis=1)
     inside, tumbling = law.range - contacts.gap, np.asarray(arm.any(axis=1))
-    energy = _radial_energy(contacts, movement, velocity, opening, inside)
+    energy = _radial_energy(contacts, dynamics, velocity, opening, inside)
     if tumbling.any():
-        energy[tumbling] = _tumbling_energy(select(contacts, tumbling), movement, velocity[tumbling], reach)
-    inverse = _inverse_masses(contacts, movement) * (1.0 + _pair_values(reach.leverage, contacts))
+        energy[tumbling] = _tumbling_energy(select(contacts, tumbling), dynamics, velocity[tumbling], reach)
+    inverse = _inverse_masses(contacts, dynamics) * (1.0 + _pair_values(reach.rotational_factor, contacts))
     fastest = np.linalg.norm(velocity, axis=1) + spin.sum(axis=1)
     return _Approach(fastest, energy, inverse, ~tumbling & (inside > 0.0) & (opening > 0.0))
 
 
 def _radial_energy(
-    contacts: Contacts, movement: BodyDynamics, velocity: FloatArray, opening: FloatArray, inside: FloatArray
+    contacts: Contacts, dynamics: BodyDynamics, velocity: FloatArray, opening: FloatArray, inside: FloatArray
 ) -> FloatArray:
     """Energy of approach of two balls m/2 [v_n² + v_t² (1 - r²/r₀²)], (m,), r apart and r₀ where the range begins
     [energy].
@@ -117,55 +117,55 @@ def _radial_energy(
     The sum with the energy of the contact is constant while they touch, as v_t r is. Balls out of range that part have
     none.
     """
-    mass = relative_motion(contacts, movement).mass
-    distance = np.linalg.norm(_relative(movement.pose.position, contacts), axis=1)
-    on_body = contacts.body_b < len(movement.pose.position)
+    mass = relative_motion(contacts, dynamics).mass
+    distance = np.linalg.norm(_relative(dynamics.pose.position, contacts), axis=1)
+    on_body = contacts.body_b < len(dynamics.pose.position)
     turned = np.where(on_body, 1.0 - (distance / (distance + inside)) ** 2, 0.0)
     sliding = np.sum(velocity**2, axis=1) - opening**2
     square = np.where(inside > 0.0, opening**2 + sliding * turned, np.minimum(opening, 0.0) ** 2)
     return np.asarray(0.5 * mass * square)
 
 
-def _tumbling_energy(contacts: Contacts, movement: BodyDynamics, velocity: FloatArray, reach: Reach) -> FloatArray:
+def _tumbling_energy(contacts: Contacts, dynamics: BodyDynamics, velocity: FloatArray, reach: Reach) -> FloatArray:
     """Energy (m,) of all mass at the greatest speed that the kinetic energy can give to a point of a free body
     [energy].
 
     Kinetic energy is that relative to each other, with bodies as heavy as in their heaviest direction. A prescribed
     body is not stopped; so its fastest point counts.
     """
-    arms, spin, inverse = reach.arms, movement.twist.angular_velocity, movement.inverse_inertia
+    arms, spin, inverse = reach.arms, dynamics.twist.angular_velocity, dynamics.inverse_inertia
     free, turning = inverse.any(axis=(1, 2)), np.zeros(len(arms))
     own = free & (arms > 0.0)
     turning[own] = 0.5 * np.einsum("ni,nij,nj->n", spin[own], np.linalg.inv(inverse[own]), spin[own])
     driven = np.where(free, 0.0, arms * np.linalg.norm(spin, axis=1))
     speed = np.linalg.norm(velocity, axis=1) + _pair_values(driven, contacts).sum(axis=1)
-    lightness: FloatArray = np.asarray(np.linalg.eigvalsh(movement.mobility)[:, 0], dtype=np.float64)
+    lightness: FloatArray = np.asarray(np.linalg.eigvalsh(dynamics.inverse_mass)[:, 0], dtype=np.float64)
     mass = _reciprocal(_pair_values(lightness, contacts).sum(axis=1))
     kinetic = 0.5 * mass * speed**2 + _pair_values(turning, contacts).sum(axis=1)
-    return np.asarray((1.0 + _pair_values(reach.leverage, contacts).max(axis=1)) * kinetic)
+    return np.asarray((1.0 + _pair_values(reach.rotational_factor, contacts).max(axis=1)) * kinetic)
 
 
 class _Creep(NamedTuple):
     """Contacts in a fluid without inertia: ``force`` (m,), the resultant in each of all but contacts [force];
-    ``answer`` (m, m), absolute rates of the gaps by forces that last for a step [speed/force]."""
+    ``rates`` (m, m), absolute rates of the gaps by forces that last for a step [speed/force]."""
 
     force: FloatArray
-    answer: FloatArray
+    rates: FloatArray
 
 
-def _creep(contacts: Contacts, movement: BodyDynamics, reach: Reach, size: float) -> _Creep:
-    answer = np.abs(size * delassus(contacts, movement, size).toarray())
-    gained = size * _pair_values(movement.max_acceleration(size), contacts).sum(axis=1)
-    wandering = 1.0 + _pair_values(reach.leverage, contacts).max(axis=1)
-    return _Creep(gained * _reciprocal(answer.diagonal()), answer * wandering)
+def _creep(contacts: Contacts, dynamics: BodyDynamics, reach: Reach, size: float) -> _Creep:
+    rates = np.abs(size * delassus(contacts, dynamics, size).toarray())
+    gained = size * _pair_values(dynamics.max_acceleration(size), contacts).sum(axis=1)
+    wandering = 1.0 + _pair_values(reach.rotational_factor, contacts).max(axis=1)
+    return _Creep(gained * _reciprocal(rates.diagonal()), rates * wandering)
 
 
 def _resolved(
     law: ForceLaw,
     contacts: Contacts,
-    movement: BodyDynamics,
+    dynamics: BodyDynamics,
     approach: _Approach,
-    pull: FloatArray,
+    acceleration: FloatArray,
     creep: _Creep | None,
 ) -> float:
     """Substep 0.1/ω with ω² ≤ Σ k/m over all contacts of either body, k the greatest stiffness within reach [time].
@@ -173,13 +173,13 @@ def _resolved(
     The substep with ``creep`` is a tenth of the contacts' relaxation time, if that is longer: h k φ₁(λh) h/m ≤ 0.1
     then, with decay rates λ, and Verlet's method with exact decay is stable up to 2.
     """
-    motion = relative_motion(contacts, movement)
-    force = motion.mass * pull if creep is None else creep.force
+    motion = relative_motion(contacts, dynamics)
+    force = motion.mass * acceleration if creep is None else creep.force
     stiffness, damping = _reached(law, contacts, motion, approach, force)
     inverse = approach.inverse
     swing = np.sqrt(_highest_sum(stiffness, contacts, inverse))
     if creep is not None:
-        swing = min(swing, float((creep.answer @ stiffness).max()))
+        swing = min(swing, float((creep.rates @ stiffness).max()))
     rate = max(swing, _highest_sum(damping, contacts, inverse))
     refuse_no_number("contacts", "stiffness or damping", rate, "contact.law")
     return RESOLUTION / rate if rate > 0 else np.inf
@@ -234,19 +234,19 @@ def _greatest(law: ForceLaw, contacts: Contacts, motion: Motion, deepest: FloatA
     return greatest_stiffness(law, contacts, deepest), damping
 
 
-def relative_motion(contacts: Contacts, movement: BodyDynamics, wall_velocity: WallVelocities | None = None) -> Motion:
+def relative_motion(contacts: Contacts, dynamics: BodyDynamics, wall_velocity: WallVelocities | None = None) -> Motion:
     """Velocity of a relative to b half-way between the m contact points, and the effective mass of the pair, zero where
     both are prescribed.
 
     ``wall_velocity`` gives the velocity (m, d) of sliding walls from surface numbers (m,) and points (m, d), None for
     walls at rest [length/time]; walls have infinite mass.
     """
-    velocity = relative_velocity(contacts, movement.pose, movement.twist)
+    velocity = relative_velocity(contacts, dynamics.pose, dynamics.twist)
     if wall_velocity is not None:
         velocity -= wall_velocity(contacts.body_b, middle(contacts))
-    on_body = contacts.body_b < len(movement.pose.position)
-    inverse = movement.inverse_mass(contacts.body_a, contacts.normal)
-    inverse[on_body] += movement.inverse_mass(contacts.body_b[on_body], contacts.normal[on_body])
+    on_body = contacts.body_b < len(dynamics.pose.position)
+    inverse = dynamics.inverse_mass_along(contacts.body_a, contacts.normal)
+    inverse[on_body] += dynamics.inverse_mass_along(contacts.body_b[on_body], contacts.normal[on_body])
     return Motion(velocity, _reciprocal(inverse))
 
 
@@ -277,12 +277,12 @@ def _point_velocity(pose: Pose, twist: Twist, body: IntArray, point: FloatArray)
     return twist.velocity[body] + cross(twist.angular_velocity[body], point - pose.position[body])
 
 
-def _inverse_masses(contacts: Contacts, movement: BodyDynamics) -> FloatArray:
+def _inverse_masses(contacts: Contacts, dynamics: BodyDynamics) -> FloatArray:
     """Inverse masses 1/m of a and of b along the normal, (m, 2), zero for walls [1/mass]."""
     inverse = np.zeros((len(contacts), 2))
     for side, body in enumerate([contacts.body_a, contacts.body_b]):
-        on_body = body < len(movement.pose.position)
-        inverse[on_body, side] = movement.inverse_mass(body[on_body], contacts.normal[on_body])
+        on_body = body < len(dynamics.pose.position)
+        inverse[on_body, side] = dynamics.inverse_mass_along(body[on_body], contacts.normal[on_body])
     return inverse
 
 

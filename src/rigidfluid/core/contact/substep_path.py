@@ -36,14 +36,14 @@ ROUNDING = 1e-9
 """Remainder of a step, over the step, that is taken for the rounding of sums."""
 
 
-def fly_freely(system: System, movement: BodyDynamics, size: float) -> BodyStep:
-    """Advance without contacts, in as many substeps as springs of joints need; ``movement`` changes in place."""
-    none, parts = nothing(movement.pose), spring_parts(system, size)
+def fly_freely(system: System, dynamics: BodyDynamics, size: float) -> BodyStep:
+    """Advance without contacts, in as many substeps as springs of joints need; ``dynamics`` changes in place."""
+    none, parts = nothing(dynamics.pose), spring_parts(system, size)
     for _ in range(parts):
-        movement.kick(none, 0.5 * size / parts)
-        movement.drift(size / parts)
-        movement.kick(none, 0.5 * size / parts)
-    return arrived(movement, none, 0.0, 0.0, parts)
+        dynamics.kick(none, 0.5 * size / parts)
+        dynamics.drift(size / parts)
+        dynamics.kick(none, 0.5 * size / parts)
+    return arrived(dynamics, none, 0.0, 0.0, parts)
 
 
 def spring_parts(system: System, size: float) -> int:
@@ -53,12 +53,12 @@ def spring_parts(system: System, size: float) -> int:
 
 @dataclass(frozen=True)
 class SubstepPath:
-    """Path of bodies through one step of this ``size`` [time], on which a ``law`` kicks them; their ``movement``
+    """Path of bodies through one step of this ``size`` [time], on which a ``law`` kicks them; their ``dynamics``
     changes in place."""
 
     system: System
     law: ForceLaw
-    movement: BodyDynamics
+    dynamics: BodyDynamics
     size: float
 
     def advance(self, sight: Sight) -> BodyStep:
@@ -67,27 +67,27 @@ class SubstepPath:
         Substeps are planned for a span of the ``sight`` at a time, and anew while nothing is in range. The sight is
         widened then for bodies that contacts have made faster.
         """
-        system, movement, size = self.system, self.movement, self.size
-        contacts = sight.contacts_at(movement.pose)
-        impulse, dissipated, actuator_work, count, left = nothing(movement.pose), 0.0, 0.0, 0, size
-        load = contact_load(system, self.law, contacts, movement)
+        system, dynamics, size = self.system, self.dynamics, self.size
+        contacts = sight.contacts_at(dynamics.pose)
+        impulse, dissipated, actuator_work, count, left = nothing(dynamics.pose), 0.0, 0.0, 0, size
+        load = contact_load(system, self.law, contacts, dynamics)
         planned, free_flight, substep, longest = 0.0, 0.0, 0.0, size / spring_parts(system, size)
         while left > 0.0:
             if planned <= 0.0 or contacts.gap.min(initial=np.inf) > self.law.range:
-                wider = system.detection.widened(sight, movement, size) if count else sight
+                wider = system.detection.widened(sight, dynamics, size) if count else sight
                 if wider is not sight:
-                    sight, contacts = wider, wider.contacts_at(movement.pose)
+                    sight, contacts = wider, wider.contacts_at(dynamics.pose)
                 planned = min(left, sight.span)
                 free_flight, substep = self._next_plan(contacts, planned)
                 planned = min(planned, free_flight + MOST_ALIKE * substep)
             part = min(free_flight or substep, left, longest)
-            movement.kick(load.wrench, 0.5 * part)
-            movement.drift(part)
-            contacts = sight.contacts_at(movement.pose)
+            dynamics.kick(load.wrench, 0.5 * part)
+            dynamics.drift(part)
+            contacts = sight.contacts_at(dynamics.pose)
             _refuse_overlaps(system, contacts)
-            before, load = load, contact_load(system, self.law, contacts, movement)
-            movement.kick(load.wrench, 0.5 * part)
-            load = load._replace(loss=damping_loss(system, contacts, movement, load.damping))
+            before, load = load, contact_load(system, self.law, contacts, dynamics)
+            dynamics.kick(load.wrench, 0.5 * part)
+            load = load._replace(loss=damping_loss(system, contacts, dynamics, load.damping))
             impulse = add_wrench(add_wrench(impulse, before.wrench, 0.5 * part), load.wrench, 0.5 * part)
             dissipated += 0.5 * part * (before.loss + load.loss)
             actuator_work += 0.5 * part * (before.actuator_work + load.actuator_work)
@@ -96,12 +96,12 @@ class SubstepPath:
             left = left - part if left - part > ROUNDING * size else 0.0
             if count == MOST_SUBSTEPS and left > 0.0:
                 raise _too_stiff(system, contacts, part)
-        return arrived(movement, impulse, dissipated, actuator_work, count)
+        return arrived(dynamics, impulse, dissipated, actuator_work, count)
 
     def planned(self, contacts: Contacts, span: float) -> Plan:
         """Free flight and substep of the next ``span`` [time], as the contacts need them."""
         reach = _surface_reach(self.system)
-        return plan(self.law, contacts, self.movement, reach, self.size, span, self.system.quasi_steady)
+        return plan(self.law, contacts, self.dynamics, reach, self.size, span, self.system.quasi_steady)
 
     def _next_plan(self, contacts: Contacts, span: float) -> Plan:
         """Substeps of the scene where it fixes their number, else as planned; raises StepRejected if they are far too
@@ -118,10 +118,10 @@ class SubstepPath:
 def _surface_reach(system: System) -> Reach:
     """Reach of the bodies' surface points: balls turn in their place, but not as components of a mechanism."""
     if not system.motions.names:
-        return Reach(system.arms, system.leverage)
+        return Reach(system.arms, system.rotational_factor)
     radii = np.array([body.bounding_radius for body in system.bodies])
     alone = np.bincount(system.motions.carrier)[system.motions.carrier] == 1
-    return Reach(np.where(alone, system.arms, radii), system.leverage)
+    return Reach(np.where(alone, system.arms, radii), system.rotational_factor)
 
 
 def _refuse_overlaps(system: System, contacts: Contacts) -> None:

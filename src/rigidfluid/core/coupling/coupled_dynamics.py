@@ -53,7 +53,7 @@ class CoupledDynamics(OwnMotions):
         self._lacking = np.where(np.isnan(coupling.load_before), 0.0, load - coupling.load_before)
         self._modal = np.zeros(len(load))
         self._weight = None if weight is None else model.modes.T @ weight
-        self.mobility, self.inverse_inertia = self._blocks()
+        self.inverse_mass, self.inverse_inertia = self._blocks()
         self._friction = _Friction(len(load))
 
     def vary_load(self, time: float) -> None:
@@ -72,9 +72,9 @@ class CoupledDynamics(OwnMotions):
         other._friction = copy(self._friction)
         return other
 
-    def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
+    def inverse_mass_along(self, body: IntArray, direction: FloatArray) -> FloatArray:
         """Inverse mass of the body alone, others held by nothing but the fluid."""
-        return np.asarray(np.einsum("mi,mij,mj->m", direction, self.mobility[body], direction))
+        return np.asarray(np.einsum("mi,mij,mj->m", direction, self.inverse_mass[body], direction))
 
     def inverse_masses(self, time: float) -> sparse.csr_matrix:
         """Matrix M⁻¹ of all velocities, in the model X φ₁(λ time) Xᵀ: the mean response to a force that lasts for
@@ -93,13 +93,13 @@ class CoupledDynamics(OwnMotions):
     def max_acceleration(self, time: float) -> FloatArray:
         """Greatest acceleration |A|, or |M⁻¹Φ| (n,); without inertia of the fluid the mean over the time, as friction
         ends it soon [length/time²]."""
-        return np.asarray(np.linalg.norm(self._pulled(time)[:, : self.pose.position.shape[1]], axis=1))
+        return np.asarray(np.linalg.norm(self._greatest_rates(time)[:, : self.pose.position.shape[1]], axis=1))
 
-    def angular_pull(self, time: float) -> FloatArray:
+    def max_angular_acceleration(self, time: float) -> FloatArray:
         """Greatest angular acceleration (n,), as in `max_acceleration` [rad/time²]."""
-        return np.asarray(np.linalg.norm(self._pulled(time)[:, self.pose.position.shape[1] :], axis=1))
+        return np.asarray(np.linalg.norm(self._greatest_rates(time)[:, self.pose.position.shape[1] :], axis=1))
 
-    def _pulled(self, time: float) -> FloatArray:
+    def _greatest_rates(self, time: float) -> FloatArray:
         if self._weight is None:
             return self._rate
         rate, modes = self._rate.copy(), np.abs(self._model.modes)
@@ -125,7 +125,7 @@ class CoupledDynamics(OwnMotions):
     def begin(self, ahead: float) -> None:
         """No-op: these motions have no prescribed velocity jump."""
 
-    def push(self, impulse: FloatArray) -> None:
+    def apply_impulse(self, impulse: FloatArray) -> None:
         """Change the velocities by impulses (n, d+k) at once, by the masses alone."""
         d, model = self.pose.position.shape[1], self._model
         velocity = self._velocity.copy()
@@ -161,14 +161,14 @@ class CoupledDynamics(OwnMotions):
         width, d = self._velocity.shape[1], self._own[0].shape[1]
         linear, angular = self._own[0].copy(), self._own[1].copy()
         body, component = np.divmod(self._model.velocities, width)
-        mobility = self._model.mobility
+        inverse_mass = self._model.inverse_mass
         first, second = np.nonzero(body[:, None] == body[None, :])
         straight = (component[first] < d) & (component[second] < d)
         turning = (component[first] >= d) & (component[second] >= d)
         i, j = first[straight], second[straight]
-        linear[body[i], component[i], component[j]] = mobility[i, j]
+        linear[body[i], component[i], component[j]] = inverse_mass[i, j]
         i, j = first[turning], second[turning]
-        angular[body[i], component[i] - d, component[j] - d] = mobility[i, j]
+        angular[body[i], component[i] - d, component[j] - d] = inverse_mass[i, j]
         return linear, angular
 
 

@@ -11,7 +11,7 @@ from rigidfluid.core.contact.look_ahead import look_ahead
 from rigidfluid.core.contact.substep_path import SubstepPath, fly_freely
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.motions import body_load
-from rigidfluid.core.model.dynamics import BodyDynamics, PushedDynamics
+from rigidfluid.core.model.dynamics import BodyDynamics, ImpulsiveDynamics
 from rigidfluid.core.model.reduced_model import Coupling
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
@@ -29,16 +29,16 @@ class DryScheme:
 
     def follow(self, state: State, start: float, size: float, coupling: Coupling | None) -> BodyStep:
         """Follow the bodies by velocity Verlet, or with implicit contacts by implicit steps."""
-        system, movement = self._system, self._dynamics(state, start)
+        system, dynamics = self._system, self._dynamics(state, start)
         if system.law is None:
-            path = fly_freely(system, movement, size)
+            path = fly_freely(system, dynamics, size)
         elif system.implicit:
-            path, movement = implicit_free(system, system.law, movement, size)
+            path, dynamics = implicit_free(system, system.law, dynamics, size)
         else:
-            sight = look_ahead(system, movement, size)
-            path = SubstepPath(system, system.law, movement, size).advance(sight)
-        by_joints = movement.link_work
-        dissipated, actuator_work = path.dissipated + by_joints.damped, path.actuator_work + by_joints.driven
+            sight = look_ahead(system, dynamics, size)
+            path = SubstepPath(system, system.law, dynamics, size).advance(sight)
+        by_joints = dynamics.link_work
+        dissipated, actuator_work = path.dissipated + by_joints.damped, path.actuator_work + by_joints.drive_work
         return replace(path, dissipated=dissipated, actuator_work=actuator_work, link=by_joints.load(size))
 
     def prepare(self, step: Step, state: State, path: BodyStep) -> Step:
@@ -69,11 +69,11 @@ class DryScheme:
         linked = system.joints.over(self._motions(state, start, load), start)
         return system.motions.carry(linked, start, load)
 
-    def _motions(self, state: State, start: float, load: Wrench) -> PushedDynamics:
+    def _motions(self, state: State, start: float, load: Wrench) -> ImpulsiveDynamics:
         """Dynamics of the motions, with a constant ``load`` on the bodies and without joints."""
         system, now = self._system, state.motions
 
-        def controlled_twist(elapsed: float) -> FloatArray:
-            return system.controlled_twist(start + elapsed)
+        def prescribed_twist(elapsed: float) -> FloatArray:
+            return system.prescribed_twist(start + elapsed)
 
-        return system.motions.dry_dynamics(now, load, system.arms, start, controlled_twist)
+        return system.motions.dry_dynamics(now, load, system.arms, start, prescribed_twist)

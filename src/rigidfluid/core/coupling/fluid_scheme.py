@@ -20,9 +20,9 @@ from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.mechanics.fluid_step import StepEnd, step_to
 from rigidfluid.core.mechanics.motions import (
     accelerations,
-    mobility,
     newly_applied,
     outer_load,
+    own_inverse_masses,
     round_motions,
     twist_arms,
 )
@@ -34,10 +34,10 @@ from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, Mesh, Pose, Step
 
-SETTLED = 1e-3
+CONVERGED = 1e-3
 """Relative change of the bodies' velocities below which the iteration of a step has converged."""
 
-SETTLED_SHARED = 1e-2
+CONVERGED_SHARED = 1e-2
 """The same where bodies share right sides in the solve for impulse responses, which are no more exact then."""
 
 STEADY = 1e-2
@@ -74,14 +74,14 @@ class FluidScheme(ABC):
             pose = predict_pose(motions.pose, motions.twist, state.past_twist, size, state.past_step)
             return undisturbed(system, pose, motions.twist, start + size)
         unlinked, near = self._motions(state, coupling), near_contacts(system, state, start, size)
-        movement = system.motions.carry(system.joints.over(unlinked, start), start)
-        self._vary_load(unlinked, movement, near, size)
+        dynamics = system.motions.carry(system.joints.over(unlinked, start), start)
+        self._vary_load(unlinked, dynamics, near, size)
         if system.implicit:
-            path = implicit_coupled(system, system.law, movement, near, size)
+            path = implicit_coupled(system, system.law, dynamics, near, size)
         else:
-            sight = system.detection.look_ahead(ExtrapolatedContacts(near, state.pose), movement, size)
-            path = SubstepPath(system, system.law, movement, size).advance(sight)
-            path = replace(path, friction=movement.friction_loss)
+            sight = system.detection.look_ahead(ExtrapolatedContacts(near, state.pose), dynamics, size)
+            path = SubstepPath(system, system.law, dynamics, size).advance(sight)
+            path = replace(path, friction=dynamics.friction_loss)
         return replace(self._with_friction(path), coupling=coupling)
 
     def prepare(self, step: Step, state: State, path: BodyStep) -> Step:
@@ -157,7 +157,7 @@ class FluidScheme(ABC):
     def _motions(self, state: State, coupling: Coupling) -> CoupledDynamics:
         """Dynamics of the motions; those outside the model keep their acceleration, and respond with mass and added
         mass."""
-        linear, angular = mobility(self._system, state)
+        linear, angular = own_inverse_masses(self._system, state)
         now, rate = state.motions, accelerations(self._system, state)
         known = self._known_load(state, coupling)
         return CoupledDynamics(now.pose, now.twist, rate, linear, angular, coupling, known)
@@ -188,10 +188,10 @@ class FluidScheme(ABC):
         before, after = (components(model, flat(twist)) for twist in (state.motions.twist, candidate.motions.twist))
         by_load = size * (self._response(model, d0, found.load) - self._response(used.model, d0, used.load))
         by_response = gained - self._response(used.model, d0, impulse)
-        missed = model.answer(d0, found.correction - used.correction) / d0
+        missed = model.response(d0, found.correction - used.correction) / d0
         arm = components(model, twist_arms(self._system))
         scale = max(float(np.linalg.norm(arm * each)) for each in (before, after, gained))
-        enough = SETTLED_SHARED if model.shared else SETTLED
+        enough = CONVERGED_SHARED if model.shared else CONVERGED
         return max(float(np.linalg.norm(arm * each)) for each in (by_load, by_response, missed)) <= enough * scale
 
 
@@ -203,13 +203,13 @@ def _velocities(system: System, near: Contacts) -> IntArray:
     """
     count, d, carrier = len(system.bodies), system.dimension, system.motions.carrier
     width = d + (1 if d == 2 else 3)
-    touching = np.zeros(len(system.motions.controlled), dtype=bool)
+    touching = np.zeros(len(system.motions.prescribed), dtype=bool)
     touching[carrier[near.body_a]] = True
     touching[carrier[near.body_b[near.body_b < count]]] = True
-    moves = np.repeat((touching & ~system.motions.controlled)[:, None], width, axis=1)
+    moves = np.repeat((touching & ~system.motions.prescribed)[:, None], width, axis=1)
     if system.law is not None and not system.law.dissipative:
         moves[round_motions(system), d:] = False
-    moves[system.joints.linked & ~system.motions.controlled] = True
+    moves[system.joints.linked & ~system.motions.prescribed] = True
     return np.flatnonzero(moves)
 
 

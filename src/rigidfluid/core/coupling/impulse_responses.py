@@ -6,20 +6,20 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.motions import reaches, twist_arms
-from rigidfluid.core.model.reduced_model import Asked, ReducedModel, reduced_model
+from rigidfluid.core.model.reduced_model import Evaluation, ReducedModel, reduced_model
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, Step
 
 CHANGED, CHANGED_SHARED = 0.01, 0.05
-"""Relative change of the tightness of a body's contacts, or of its way in a step over its radius, above which its
-response is evaluated anew; the second one where many bodies share questions."""
+"""Relative change of the film resistance of a body, or of its way in a step over its radius, above which its response
+is re-evaluated; the second one where many bodies share right sides."""
 
 _FILM = 0.1
 """Thickness of a film, over the radius, below which its resistance outweighs the body's own."""
 
 ALONE = 12
-"""Largest number of bodies whose responses are evaluated one by one; more share questions with others far away."""
+"""Largest number of bodies whose responses are evaluated one by one; more share right sides with others far away."""
 
 FAR = 3.0
 """Distance of two bodies, over the sum of their radii, beyond which they hardly respond to each other's impulses: the
@@ -35,43 +35,44 @@ def updated_model(
     velocities: IntArray,
     known: ReducedModel | None,
 ) -> ReducedModel:
-    """Reduced model of ``velocities`` (c,), numbers among the components (N, d+k) of all motions' twists; the backend
-    is asked for bodies alone whose contacts or motion have changed.
+    """Reduced model of ``velocities`` (c,), numbers among the components (N, d+k) of all motions' twists; the responses
+    are evaluated for bodies alone whose contacts or motion have changed.
 
     ``step`` has the matrix and mesh of the response, ``contacts`` and ``twist`` (N, d+k) are those of the bodies in it,
     as friction depends on the flow; ``known`` is an earlier model, of these velocities or others, or None.
     """
     if len(velocities) == 0:
-        return ReducedModel(velocities, np.zeros((0, 0)), np.zeros(0), Asked(np.zeros(0), np.zeros(0)), False)
+        return ReducedModel(velocities, np.zeros((0, 0)), np.zeros(0), Evaluation(np.zeros(0), np.zeros(0)), False)
     bodies, d0 = velocities // step.load.shape[1], float(step.derivative[0])
-    now = Asked(_tightness(system, contacts)[bodies], twist.ravel()[velocities])
-    by_mass, by_step, before = _remembered(known, velocities, d0)
+    now = Evaluation(_film_resistance(system, contacts)[bodies], twist.ravel()[velocities])
+    inviscid, viscous, before = _remembered(known, velocities, d0)
     shared = len(np.unique(bodies)) > ALONE
     changed = _changes(system, now, before, bodies, velocities % step.load.shape[1], d0)
     fresh = ~(changed <= (CHANGED_SHARED if shared else CHANGED))
     if known is not None and not fresh.any() and np.array_equal(known.velocities, velocities):
         return known
     if fresh.any():
-        for matrix, answers in zip((by_mass, by_step), _asked(system, state, step, velocities, fresh), strict=True):
-            _take_over(matrix, answers, fresh)
-    asked = Asked(*(np.where(fresh, new, old) for new, old in zip(now.arrays, before.arrays, strict=True)))
-    return reduced_model(velocities, by_mass, by_step, d0, asked, shared)
+        for matrix, found in zip((inviscid, viscous), _evaluated(system, state, step, velocities, fresh), strict=True):
+            _take_over(matrix, found, fresh)
+    evaluation = Evaluation(*(np.where(fresh, new, old) for new, old in zip(now.arrays, before.arrays, strict=True)))
+    return reduced_model(velocities, inviscid, viscous, d0, evaluation, shared)
 
 
 def _changes(
-    system: System, now: Asked, before: Asked, bodies: IntArray, components: IntArray, d0: float
+    system: System, now: Evaluation, before: Evaluation, bodies: IntArray, components: IntArray, d0: float
 ) -> FloatArray:
-    """Relative change of the tightness of each velocity's body, or of the body's way in a step over its radius,
+    """Relative change of the film resistance of each velocity's body, or of the body's way in a step over its radius,
     whichever is more, (c,) [1]."""
     reach, arm = reaches(system)[0], twist_arms(system)[bodies, components]
     way = np.zeros(len(reach))
     turned = np.abs(now.velocity - before.velocity) * arm / (d0 * reach[bodies])
     np.maximum.at(way, bodies, np.where(np.isnan(turned), np.inf, turned))
-    return np.maximum(np.abs(now.tightness - before.tightness) / before.tightness, way[bodies])
+    return np.maximum(np.abs(now.film_resistance - before.film_resistance) / before.film_resistance, way[bodies])
 
 
-def _tightness(system: System, contacts: Contacts) -> FloatArray:
-    """Tightness 1 + Σ R/(10 gap) over the contacts of each motion with bodies of radius R, (N,) [1].
+def _film_resistance(system: System, contacts: Contacts) -> FloatArray:
+    """Film resistance 1 + Σ R/(10 gap) over the contacts of each motion with bodies of radius R, relative to that of
+    the body alone, (N,) [1].
 
     The resistance of a film is in inverse proportion to its thickness; films thicker than a tenth of the radius matter
     little beside the body's own.
@@ -85,52 +86,54 @@ def _tightness(system: System, contacts: Contacts) -> FloatArray:
     return total
 
 
-def _remembered(known: ReducedModel | None, velocities: IntArray, d0: float) -> tuple[FloatArray, FloatArray, Asked]:
+def _remembered(
+    known: ReducedModel | None, velocities: IntArray, d0: float
+) -> tuple[FloatArray, FloatArray, Evaluation]:
     """Known responses W_i and W_s (c, c), zero where unknown, and the conditions of their evaluation, NaN where
     unknown."""
-    by_mass, by_step = np.zeros((2, len(velocities), len(velocities)))
-    before = Asked(*np.full((2, len(velocities)), np.nan))
+    inviscid, viscous = np.zeros((2, len(velocities), len(velocities)))
+    before = Evaluation(*np.full((2, len(velocities)), np.nan))
     if known is not None:
         _, here, there = np.intersect1d(velocities, known.velocities, return_indices=True)
-        by_mass[np.ix_(here, here)] = known.mobility[np.ix_(there, there)]
-        by_step[np.ix_(here, here)] = known.answer(d0, np.eye(len(known.velocities)))[np.ix_(there, there)]
-        for old, then in zip(before.arrays, known.asked.arrays, strict=True):
+        inviscid[np.ix_(here, here)] = known.inverse_mass[np.ix_(there, there)]
+        viscous[np.ix_(here, here)] = known.response(d0, np.eye(len(known.velocities)))[np.ix_(there, there)]
+        for old, then in zip(before.arrays, known.evaluation.arrays, strict=True):
             old[here] = then[there]
-    return by_mass, by_step, before
+    return inviscid, viscous, before
 
 
-def _take_over(matrix: FloatArray, answers: FloatArray, fresh: BoolArray) -> None:
-    """Replace the columns and rows ``fresh`` of ``matrix`` by the mean of ``answers`` (c, f) and their transpose; NaN
-    entries do not count."""
+def _take_over(matrix: FloatArray, responses: FloatArray, fresh: BoolArray) -> None:
+    """Replace the columns and rows ``fresh`` of ``matrix`` by the mean of ``responses`` (c, f) and their transpose;
+    NaN entries do not count."""
     of_rows = np.full_like(matrix, np.nan)
-    of_rows[:, fresh] = answers
+    of_rows[:, fresh] = responses
     both = np.stack([of_rows, of_rows.T])
-    said = np.isfinite(both)
-    times = said.sum(axis=0)
-    mean = np.where(said, both, 0.0).sum(axis=0) / np.maximum(times, 1)
-    asked = fresh[:, None] | fresh[None, :]
-    matrix[asked] = mean[asked]
+    finite = np.isfinite(both)
+    times = finite.sum(axis=0)
+    mean = np.where(finite, both, 0.0).sum(axis=0) / np.maximum(times, 1)
+    replaced = fresh[:, None] | fresh[None, :]
+    matrix[replaced] = mean[replaced]
 
 
-def _asked(
+def _evaluated(
     system: System, state: State, step: Step, velocities: IntArray, fresh: BoolArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Responses W_i and W_s (c, f) to the ``fresh`` velocities; NaN where another body of a question is nearer."""
+    """Responses W_i and W_s (c, f) to the ``fresh`` velocities; NaN where another body of a right side is nearer."""
     width = step.load.shape[1]
     bodies, turn = np.divmod(velocities[fresh], width)
     position = step.kinematics.centres(step.pose)
     group, components = _groups(system, position, bodies), np.unique(turn)
-    question = group * len(components) + np.searchsorted(components, turn)
-    numbers, question = np.unique(question, return_inverse=True)
+    side = group * len(components) + np.searchsorted(components, turn)
+    numbers, side = np.unique(side, return_inverse=True)
     impulses = np.zeros((len(numbers), *step.load.shape))
-    impulses[question, bodies, turn] = 1.0
+    impulses[side, bodies, turn] = 1.0
     response = system.backend.response(state.fluid, state.mesh, step, impulses)
-    mine = _nearest_of(position, velocities // width, bodies, question)
-    by_mass, by_step = (
-        np.where(mine, twists.reshape(len(numbers), -1)[question][:, velocities].T, np.nan)
-        for twists in (response.by_mass, response.by_step)
+    mine = _is_nearest(position, velocities // width, bodies, side)
+    inviscid, viscous = (
+        np.where(mine, twists.reshape(len(numbers), -1)[side][:, velocities].T, np.nan)
+        for twists in (response.inviscid, response.viscous)
     )
-    return by_mass, by_step
+    return inviscid, viscous
 
 
 def _groups(system: System, position: FloatArray, bodies: IntArray) -> IntArray:
@@ -149,10 +152,11 @@ def _groups(system: System, position: FloatArray, bodies: IntArray) -> IntArray:
     return np.asarray(group[place])
 
 
-def _nearest_of(position: FloatArray, answering: IntArray, asked: IntArray, question: IntArray) -> BoolArray:
-    """Whether of all bodies in a question the ``asked`` one (f,) is nearest to the one ``answering`` (c,), (c, f)."""
-    apart = np.linalg.norm(position[answering][:, None] - position[asked][None, :], axis=2)
-    nearest = np.full((len(answering), int(question.max()) + 1), np.inf)
-    for column, number in enumerate(question):
+def _is_nearest(position: FloatArray, responding: IntArray, pushed: IntArray, side: IntArray) -> BoolArray:
+    """Whether the ``pushed`` body (f,) is the nearest one of its right ``side`` (f,) to the ``responding`` one (c,),
+    (c, f)."""
+    apart = np.linalg.norm(position[responding][:, None] - position[pushed][None, :], axis=2)
+    nearest = np.full((len(responding), int(side.max()) + 1), np.inf)
+    for column, number in enumerate(side):
         nearest[:, number] = np.minimum(nearest[:, number], apart[:, column])
-    return np.asarray(apart <= nearest[:, question])
+    return np.asarray(apart <= nearest[:, side])

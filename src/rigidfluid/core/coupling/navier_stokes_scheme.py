@@ -57,4 +57,4 @@ class NavierStokesScheme(FluidScheme):
 
     def _response(self, model: ReducedModel, d0: float, impulse: FloatArray) -> FloatArray:
         """Response M⁻¹ J by the masses alone."""
-        return np.asarray(model.mobility @ impulse)
+        return np.asarray(model.inverse_mass @ impulse)

@@ -56,4 +56,4 @@ class StokesScheme(FluidScheme):
 
     def _response(self, model: ReducedModel, d0: float, impulse: FloatArray) -> FloatArray:
         """Response d₀ (d₀M + R)⁻¹ J: by the end of the step drag has damped that of the masses alone."""
-        return model.answer(d0, impulse)
+        return model.response(d0, impulse)

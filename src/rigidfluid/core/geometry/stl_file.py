@@ -29,7 +29,7 @@ def read_stl(path: Path, key: str) -> Facets:
         raise SceneError(key, f"{path}: {error.strerror}", "a readable STL file", "Check the path.") from None
     corners = _binary(content) if _is_binary(content) else _text(content, path, key)
     if len(corners) == 0 or not np.isfinite(corners).all():
-        raise SceneError(key, f"{path} with no triangles, or with no numbers", "a surface", "Write the file anew.")
+        raise SceneError(key, f"{path} with no triangles, or with no numbers", "a surface", "Rewrite the file.")
     points, numbers = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
     return Facets(points, numbers.reshape(-1, 3).astype(np.int64), np.zeros(len(corners), dtype=np.int64))
 
@@ -50,6 +50,6 @@ def _text(content: bytes, path: Path, key: str) -> FloatArray:
     try:
         vertices = np.array([row[1:] for row in rows if row and row[0] == "vertex"], dtype=float).reshape(-1, 3, 3)
     except ValueError:
-        remedy = "Write the file anew, as text or binary."
+        remedy = "Rewrite the file, as text or binary."
         raise SceneError(key, f"{path}, which is no STL file", "three vertices a facet", remedy) from None
     return vertices

@@ -71,11 +71,11 @@ class CoordinateSpring:
     def add_wrench(self, pose: Pose, wrench: Wrench) -> None:
         at = self._placed(pose)
         along, about = self._coordinate.directions(at)
-        pull = -self._stiffness * (self._coordinate.value(at) - self._rest)
+        force = -self._stiffness * (self._coordinate.value(at) - self._rest)
         for sign, body, lever in zip((1.0, -1.0), self._bodies, self._coordinate.levers(at), strict=True):
             if body is not None:
-                wrench.force[body] += sign * pull * along[0]
-                wrench.torque[body] += sign * pull * (along @ lever + about)[0]
+                wrench.force[body] += sign * force * along[0]
+                wrench.torque[body] += sign * force * (along @ lever + about)[0]
 
     def stretch(self, pose: Pose) -> FloatArray:
         at, (count, d) = self._placed(pose), pose.position.shape

@@ -10,16 +10,17 @@ _SMALL = 1e-3
 
 
 def damper_impulse(
-    answer: FloatArray, compliance: FloatArray, before: FloatArray, undamped: FloatArray, time: float
+    delassus: FloatArray, compliance: FloatArray, before: FloatArray, undamped: FloatArray, time: float
 ) -> FloatArray:
-    """Impulse (c,) -∫ s/compliance of ds/dt = a - answer · s/compliance over ``time`` [force·time | force·length·time].
+    """Impulse (c,) -∫ s/compliance of ds/dt = a - delassus · s/compliance over ``time`` [force·time |
+    force·length·time].
 
-    a is the rate that leads from the rates of stretch ``before`` (c,) to ``undamped`` (c,) without dampers, ``answer``
-    (c, c) the inverse mass C W Cᵀ between dampers, ``compliance`` (c,) 1/damping. In the modes of answer/compliance it
-    is exact: so dampers of any strength give no energy.
+    a is the rate that leads from the rates of stretch ``before`` (c,) to ``undamped`` (c,) without dampers,
+    ``delassus`` (c, c) the inverse mass C W Cᵀ between dampers, ``compliance`` (c,) 1/damping. In the modes of
+    delassus/compliance it is exact: so dampers of any strength give no energy.
     """
     root = 1.0 / np.sqrt(compliance)
-    decay, modes = np.linalg.eigh(root[:, None] * answer * root)
+    decay, modes = np.linalg.eigh(root[:, None] * delassus * root)
     first, second = _phi(np.maximum(decay, 0.0) * time)
     start, gained = modes.T @ (root * before), modes.T @ (root * (undamped - before))
     return np.asarray(-time * root * (modes @ (first * start + second * gained)), dtype=np.float64)

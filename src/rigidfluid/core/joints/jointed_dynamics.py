@@ -14,7 +14,7 @@ from rigidfluid.core.joints.damping import damper_impulse
 from rigidfluid.core.joints.joint_forces import joint_forces
 from rigidfluid.core.mechanics.own_motions import OwnMotions
 from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_sum
-from rigidfluid.core.model.dynamics import LinkWork, PushedDynamics
+from rigidfluid.core.model.dynamics import ImpulsiveDynamics, LinkWork
 from rigidfluid.core.model.joints import Joints
 from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.types import Links, Pose, Twist, Wrench
@@ -53,7 +53,7 @@ class JointedDynamics(OwnMotions):
     112 (1994) 117, doi:10.1006/jcph.1994.1085.
     """
 
-    def __init__(self, inner: PushedDynamics, linkage: PlacedLinks, time: float) -> None:
+    def __init__(self, inner: ImpulsiveDynamics, linkage: PlacedLinks, time: float) -> None:
         self._inner, self._linkage, self._time = inner, linkage, time
         self._here = self._rows_here()
         self._rigid: BoolArray = self._here.links.compliance == 0.0
@@ -83,26 +83,26 @@ class JointedDynamics(OwnMotions):
         return self._inner.resisted
 
     @property
-    def mobility(self) -> FloatArray:
+    def inverse_mass(self) -> FloatArray:
         """Inverse masses of the motions without joints [1/mass]: joints only make motions heavier, so that plans with
         these err to the safe side."""
-        return self._inner.mobility
+        return self._inner.inverse_mass
 
     @property
     def inverse_inertia(self) -> FloatArray:
-        """Inverse inertia without joints; see `mobility`."""
+        """Inverse inertia without joints; see `inverse_mass`."""
         return self._inner.inverse_inertia
 
-    def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
-        """Inverse mass without joints; see `mobility`."""
-        return self._inner.inverse_mass(body, direction)
+    def inverse_mass_along(self, body: IntArray, direction: FloatArray) -> FloatArray:
+        """Inverse mass along a direction without joints; see `inverse_mass`."""
+        return self._inner.inverse_mass_along(body, direction)
 
     def inverse_masses(self, time: float) -> sparse.csr_matrix:
         """W - W Cᵀ (C W Cᵀ)⁻¹ C W, C of rigid joints, W without them."""
         alone, rows = self._inner.inverse_masses(time), sparse.csr_matrix(self._here.rows[self._rigid])
-        answers = alone @ rows.T
-        held = joint_forces((rows @ answers).toarray(), answers.T.toarray())
-        return sparse.csr_matrix(alone - answers @ sparse.csr_matrix(held))
+        responses = alone @ rows.T
+        held = joint_forces((rows @ responses).toarray(), responses.T.toarray())
+        return sparse.csr_matrix(alone - responses @ sparse.csr_matrix(held))
 
     def copied(self) -> Self:
         other = copy(self)
@@ -115,7 +115,7 @@ class JointedDynamics(OwnMotions):
         d = self.pose.position.shape[1]
         return np.asarray(np.linalg.norm(self._accelerations(time)[:, :, :d], axis=2).max(axis=0))
 
-    def angular_pull(self, time: float) -> FloatArray:
+    def max_angular_acceleration(self, time: float) -> FloatArray:
         """Largest angular acceleration of each motion (N,) [rad/time²]; see `max_acceleration`."""
         d = self.pose.position.shape[1]
         return np.asarray(np.linalg.norm(self._accelerations(time)[:, :, d:], axis=2).max(axis=0))
@@ -125,14 +125,15 @@ class JointedDynamics(OwnMotions):
         if not self._begun:
             self._begin(time)
         springs, before = self._linkage.spring_wrench(self.pose, self._time), self._missing_rate()
-        driven = time * self._linkage.spring_power(self.pose, self._time)
+        drive_work = time * self._linkage.spring_power(self.pose, self._time)
         self._inner.kick(wrench_sum(wrench, springs), time, at)
         impulse, damped = self._rigid_impulse(), 0.0
         if not self._rigid.all():
-            by_dampers, damped = self._damper_impulse(before, self._missing_rate() - self._here.answer @ impulse, time)
+            undamped = self._missing_rate() - self._here.delassus @ impulse
+            by_dampers, damped = self._damper_impulse(before, undamped, time)
             impulse += by_dampers
-        self._inner.push(self._motion_impulse(impulse))
-        self._add_work(impulse, driven, damped, time * flat(springs))
+        self._inner.apply_impulse(self._motion_impulse(impulse))
+        self._add_work(impulse, drive_work, damped, time * flat(springs))
 
     def drift(self, time: float) -> None:
         """Move the poses so that rigid joints fit at the end, where they then take out of the twist what they do not
@@ -141,9 +142,9 @@ class JointedDynamics(OwnMotions):
         self._add_work(impulse)
         self._time += time
         self._here = self._rows_here()
-        settled = self._rigid_impulse()
-        self._inner.push(self._motion_impulse(settled))
-        self._add_work(settled)
+        closing = self._rigid_impulse()
+        self._inner.apply_impulse(self._motion_impulse(closing))
+        self._add_work(closing)
 
     def _begin(self, time: float) -> None:
         """Change from the rates before a corner of a drive or stroke to those after it, where the first drift, twice as
@@ -157,7 +158,7 @@ class JointedDynamics(OwnMotions):
         self._here = self._here._replace(links=after)
         self._inner.begin(ahead)
         impulse = self._rigid_impulse()
-        self._inner.push(self._motion_impulse(impulse))
+        self._inner.apply_impulse(self._motion_impulse(impulse))
         self._add_work(impulse, 0.5 * float(impulse @ (before.rate - after.rate)))
 
     def _close(self, time: float) -> FloatArray:
@@ -165,14 +166,14 @@ class JointedDynamics(OwnMotions):
         impulse, rigid, end = np.zeros(len(self._rigid)), self._rigid, self._time + time
         for _ in range(_MOST_ITERATIONS):
             trial = self._inner.copied()
-            trial.push(self._motion_impulse(impulse))
+            trial.apply_impulse(self._motion_impulse(impulse))
             trial.drift(time)
             misfit = self._linkage.misfit(trial.pose, end)
             if np.all(np.abs(misfit) <= self._linkage.tolerance(trial.pose)):
                 self._inner = trial
                 return impulse
             there = self._linkage.links(trial.pose, end).rows[rigid]
-            slope = time * there.reshape(len(there), flat(trial.twist).size) @ self._here.answers[:, rigid]
+            slope = time * there.reshape(len(there), flat(trial.twist).size) @ self._here.responses[:, rigid]
             impulse[rigid] -= joint_forces(slope, misfit)
         found = f"a misfit of {np.abs(misfit).max():.3g} that no force closes"
         raise StepRejected("joints", found, "forces with which they fit", "Shorten time.step.")
@@ -180,16 +181,16 @@ class JointedDynamics(OwnMotions):
     def _rigid_impulse(self) -> FloatArray:
         """Impulses (c,) of rigid joints that make the twist what they allow."""
         impulse, rigid = np.zeros(len(self._rigid)), self._rigid
-        impulse[rigid] = joint_forces(self._here.answer[np.ix_(rigid, rigid)], self._missing_rate()[rigid])
+        impulse[rigid] = joint_forces(self._here.delassus[np.ix_(rigid, rigid)], self._missing_rate()[rigid])
         return impulse
 
     def _damper_impulse(self, before: FloatArray, undamped: FloatArray, time: float) -> tuple[FloatArray, float]:
         """Impulses (c,) of dampers, whose rates lack ``before`` and without them ``undamped`` (c,), and of rigid joints
         that resist them; and the energy that they take."""
-        rigid, damped, answer = self._rigid, ~self._rigid, self._here.answer
-        across, impulse = answer[np.ix_(rigid, damped)], np.zeros(len(rigid))
-        resisting = -joint_forces(answer[np.ix_(rigid, rigid)], across)
-        alone = answer[np.ix_(damped, damped)] + across.T @ resisting
+        rigid, damped, delassus = self._rigid, ~self._rigid, self._here.delassus
+        across, impulse = delassus[np.ix_(rigid, damped)], np.zeros(len(rigid))
+        resisting = -joint_forces(delassus[np.ix_(rigid, rigid)], across)
+        alone = delassus[np.ix_(damped, damped)] + across.T @ resisting
         start, end = -before[damped], -undamped[damped]
         impulse[damped] = damper_impulse(alone, self._here.links.compliance[damped], start, end, time)
         impulse[rigid] = resisting @ impulse[damped]
@@ -200,14 +201,14 @@ class JointedDynamics(OwnMotions):
         return np.asarray(self._here.links.rate - self._here.rows @ flat(self.twist).ravel())
 
     def _add_work(
-        self, impulse: FloatArray, driven: float = 0.0, damped: float = 0.0, springs: FloatArray | float = 0.0
+        self, impulse: FloatArray, drive_work: float = 0.0, damped: float = 0.0, springs: FloatArray | float = 0.0
     ) -> None:
         """Add to the work of joints: impulses (c,) here, at the rates here, and works of drives, dampers and
         springs."""
         so_far, pushed = self._work, self._motion_impulse(impulse) + springs
-        driven += float(impulse @ self._here.links.rate)
+        drive_work += float(impulse @ self._here.links.rate)
         self._work = LinkWork(
-            so_far.impulse + impulse, so_far.pushed + pushed, so_far.driven + driven, so_far.damped + damped
+            so_far.impulse + impulse, so_far.pushed + pushed, so_far.drive_work + drive_work, so_far.damped + damped
         )
 
     def _motion_impulse(self, impulse: FloatArray) -> FloatArray:
@@ -217,8 +218,8 @@ class JointedDynamics(OwnMotions):
     def _rows_here(self) -> _Rows:
         links = self._linkage.links(self.pose, self._time)
         rows = links.rows.reshape(len(links.rate), flat(self.twist).size)
-        answers = self._inner.inverse_masses(0.0) @ rows.T
-        return _Rows(links, rows, answers, rows @ answers)
+        responses = self._inner.inverse_masses(0.0) @ rows.T
+        return _Rows(links, rows, responses, rows @ responses)
 
     def _accelerations(self, time: float) -> FloatArray:
         """Mean accelerations in parts of a time (parts, N, d+k)."""
@@ -232,9 +233,9 @@ class JointedDynamics(OwnMotions):
 
 
 class _Rows(NamedTuple):
-    """Linearised links in one pose: ``rows`` C (c, N·(d+k)), ``answers`` W Cᵀ to impulses, ``answer`` C W Cᵀ."""
+    """Linearised links in one pose: ``rows`` C (c, N·(d+k)), ``responses`` W Cᵀ to impulses, ``delassus`` C W Cᵀ."""
 
     links: Links
     rows: FloatArray
-    answers: FloatArray
-    answer: FloatArray
+    responses: FloatArray
+    delassus: FloatArray

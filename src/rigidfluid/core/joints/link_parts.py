@@ -40,7 +40,7 @@ class LinkParts:
         """Gap, coordinate, force and torque of the link at poses ``bodies``, with the markers of its constraints
         ``placed`` and the ``force`` of its rows (r,)."""
         held, torque = self._constraint_wrench(placed, force)
-        pull, pull_torque = self._spring_wrench(placed, bodies)
+        spring_force, spring_torque = self._spring_wrench(placed, bodies)
         pairs = list(zip(self.constraints, placed, strict=True))
         gaps = [one.misfit(at, time) for one, at in pairs if one.joins_points]
         value, rate, seen = np.nan, np.nan, self.coordinate
@@ -52,8 +52,8 @@ class LinkParts:
             coordinate=None if seen is None else seen.name,
             value=value,
             rate=rate,
-            force=held + pull,
-            torque=torque + pull_torque,
+            force=held + spring_force,
+            torque=torque + spring_torque,
         )
 
     def _spring_wrench(self, placed: Sequence[PlacedPair], bodies: Pose) -> tuple[FloatArray, FloatArray]:

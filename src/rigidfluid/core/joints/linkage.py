@@ -22,7 +22,7 @@ from rigidfluid.core.joints.markers import Markers, PlacedPair
 from rigidfluid.core.joints.redundancy import motion_of, refuse_redundant, refuse_void
 from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, rotate
 from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_sum
-from rigidfluid.core.model.dynamics import PushedDynamics
+from rigidfluid.core.model.dynamics import ImpulsiveDynamics
 from rigidfluid.core.model.joints import GroundLink, LinkReading
 from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.motions import Motions
@@ -43,7 +43,7 @@ class JointLinkage:
     rows of its kind's constraints. A ground link has rows for the forces and torques that hold the body, then those of
     its dampers.
 
-    ``pose`` is that of the bodies at the start, on ``motions``; ``controlled_twist`` gives the prescribed twists (N,
+    ``pose`` is that of the bodies at the start, on ``motions``; ``prescribed_twist`` gives the prescribed twists (N,
     d+k) at a time; ``resistance`` (n, d+k) is a lower bound of that of a fluid without inertia [force·time/length |
     force·length·time]. Raises SceneError if a joint holds nothing that moves freely, or what other joints hold already.
 
@@ -60,11 +60,11 @@ class JointLinkage:
         joints: Sequence[PlacedJoint],
         ground: Sequence[GroundLink],
         motions: Motions,
-        controlled_twist: Callable[[float], FloatArray],
+        prescribed_twist: Callable[[float], FloatArray],
         resistance: FloatArray | None = None,
     ) -> None:
-        self._motions, self._controlled_twist = motions, controlled_twist
-        self._controlled, self._carrier = motions.controlled, motions.carrier
+        self._motions, self._prescribed_twist = motions, prescribed_twist
+        self._prescribed, self._carrier = motions.prescribed, motions.carrier
         self._parts = [*(joint_parts(joint, pose) for joint in joints), *(ground_parts(link, pose) for link in ground)]
         self._slices = _slices(self._parts)
         self._constraints = [one for part in self._parts for one in part.constraints]
@@ -79,8 +79,8 @@ class JointLinkage:
         self.linked, self.clusters = self._link_clusters(
             [(one.first, one.second) for one in joints], [one.body for one in ground]
         )
-        self.driven = motions.driven or bool(self._controlled.any()) or bool(drives)
-        refuse_void(self._constraints, self._carrier, self._controlled)
+        self.driven = motions.driven or bool(self._prescribed.any()) or bool(drives)
+        refuse_void(self._constraints, self._carrier, self._prescribed)
         rigid = self._rigid(self.links(motions.pose, 0.0).rows)
         refuse_redundant(self._constraints, self._mass_weighted_rows(rigid, motions.pose))
         self.frequency = self._greatest_rate(motions.pose, resistance)
@@ -98,7 +98,7 @@ class JointLinkage:
             here = slice(start, start := start + len(one.compliance))
             one.add_rows(at, rows[here])
             rate[here] = one.rate(time)
-        rate -= np.einsum("cni,ni->c", rows, self._prescribed_twist(bodies, kinematics, time))
+        rate -= np.einsum("cni,ni->c", rows, self._prescribed_part(bodies, kinematics, time))
         return Links(self._rows_on_motions(rows, kinematics), rate, self._compliance)
 
     def unloaded(self, motions: Pose) -> LinkLoad:
@@ -119,12 +119,12 @@ class JointLinkage:
     def closed(self, motions: Pose, time: float) -> Pose:
         """Nearest poses at which the joints fit, in the metric of the masses, by Newton's method; raises StepRejected
         if there are none near."""
-        moves, d = (self.linked & ~self._controlled)[:, None], motions.position.shape[1]
+        moves, d = (self.linked & ~self._prescribed)[:, None], motions.position.shape[1]
         for _ in range(_MOST_ITERATIONS):
             misfit = self.misfit(motions, time)
             if np.all(np.abs(misfit) <= self.tolerance(motions)):
                 return motions
-            way = self._answer(motions, time, misfit)
+            way = self._correction(motions, time, misfit)
             position = motions.position - way[:, :d]
             orientation = np.where(moves, rotate(motions.orientation, -way[:, d:]), motions.orientation)
             motions = Pose(position, orientation)
@@ -139,13 +139,13 @@ class JointLinkage:
         """The ``twist`` (N rows) after the impulses of rigid joints that take out of it what they do not allow."""
         d, links = twist.velocity.shape[1], self.links(motions, time)
         missing = np.einsum("cni,ni->c", links.rows, flat(twist)) - links.rate
-        change = self._answer(motions, time, missing[links.compliance == 0.0])
+        change = self._correction(motions, time, missing[links.compliance == 0.0])
         return Twist(twist.velocity - change[:, :d], twist.angular_velocity - change[:, d:])
 
     def spring_wrench(self, motions: Pose, time: float) -> Wrench:
         """Wrenches of the springs on the N motions."""
         bodies, kinematics = self._bodies(motions, time)
-        return kinematics.motion_wrench(self._pull(bodies))
+        return kinematics.motion_wrench(self._wrench_on_bodies(bodies))
 
     def with_springs(self, wrench: Wrench, motions: Pose, time: float) -> Wrench:
         """Sum of the ``wrench`` on the motions and that of the springs."""
@@ -156,7 +156,7 @@ class JointLinkage:
         wrench = np.tensordot(force, links.rows, axes=1)
         return LinkLoad(force, wrench + flat(self.spring_wrench(motions, time)))
 
-    def over(self, motions: PushedDynamics, start: float) -> JointedDynamics:
+    def over(self, motions: ImpulsiveDynamics, start: float) -> JointedDynamics:
         """Dynamics of the motions with these joints from ``start`` on [time]."""
         return JointedDynamics(motions, self, start)
 
@@ -170,7 +170,7 @@ class JointLinkage:
         if not self._springs or not self.driven:
             return 0.0
         bodies, kinematics = self._bodies(motions, time)
-        return -float(np.sum(flat(self._pull(bodies)) * self._prescribed_twist(bodies, kinematics, time)))
+        return -float(np.sum(flat(self._wrench_on_bodies(bodies)) * self._prescribed_part(bodies, kinematics, time)))
 
     def _placed(self, bodies: Pose) -> Iterator[tuple[Constraint, PlacedPair]]:
         return zip(self._constraints, self._markers.placed(bodies), strict=True)
@@ -184,13 +184,13 @@ class JointLinkage:
             readings.append(part.reading(own, bodies, twist, time, force[rows]))
         return readings
 
-    def following(self, controlled_twist: Callable[[float], FloatArray]) -> JointLinkage:
+    def following(self, prescribed_twist: Callable[[float], FloatArray]) -> JointLinkage:
         """The same joints where given motions are other ones from now on, (N, d+k) at a time."""
         other = copy(self)
-        other._controlled_twist = controlled_twist
+        other._prescribed_twist = prescribed_twist
         return other
 
-    def _pull(self, bodies: Pose) -> Wrench:
+    def _wrench_on_bodies(self, bodies: Pose) -> Wrench:
         wrench = nothing(bodies)
         for spring in self._springs:
             spring.add_wrench(bodies, wrench)
@@ -199,20 +199,20 @@ class JointLinkage:
     def _bodies(self, motions: Pose, time: float) -> tuple[Pose, Kinematics]:
         return self._motions.poses(motions, time), self._motions.kinematics(motions, time)
 
-    def _prescribed_twist(self, bodies: Pose, kinematics: Kinematics, time: float) -> FloatArray:
+    def _prescribed_part(self, bodies: Pose, kinematics: Kinematics, time: float) -> FloatArray:
         """Twists of the bodies (n, d+k) by prescribed motions and strokes alone, free motions at rest."""
         d = bodies.position.shape[1]
-        held = np.where(self._controlled[:, None], self._controlled_twist(time), 0.0)
-        return flat(kinematics.component_twist(Twist(held[:, :d], held[:, d:])))
+        motion = np.where(self._prescribed[:, None], self._prescribed_twist(time), 0.0)
+        return flat(kinematics.component_twist(Twist(motion[:, :d], motion[:, d:])))
 
     def _rows_on_motions(self, rows: FloatArray, kinematics: Kinematics) -> FloatArray:
         """C G of rows (c, n, d+k) on the bodies, zero for given motions (c, N, d+k)."""
-        return np.asarray(kinematics.motion_rows(rows) * ~self._controlled[:, None])
+        return np.asarray(kinematics.motion_rows(rows) * ~self._prescribed[:, None])
 
     def _rigid(self, rows: FloatArray) -> FloatArray:
         return np.asarray(rows[self._compliance == 0.0])
 
-    def _answer(self, motions: Pose, time: float, missing: FloatArray) -> FloatArray:
+    def _correction(self, motions: Pose, time: float, missing: FloatArray) -> FloatArray:
         """Product M⁻¹ Cᵀ (C M⁻¹ Cᵀ)⁻¹ · missing of the rigid rows, ``missing`` (r,), (N, d+k)."""
         rows = self._rigid(self.links(motions, time).rows)
         light = np.einsum("nij,cnj->cni", self._inverse_masses(motions, time), rows)
@@ -254,11 +254,11 @@ class JointLinkage:
         """Mask (N,) of the motions that have links, and the lowest number (N,) of those that each is linked with."""
         from scipy.sparse.csgraph import connected_components  # slow to load, and few scenes have joints
 
-        count, linked = len(self._controlled), np.zeros(len(self._controlled), dtype=bool)
+        count, linked = len(self._prescribed), np.zeros(len(self._prescribed), dtype=bool)
         linked[
             [self._carrier[body] for body in (*ground, *(one for pair in joints for one in pair if one is not None))]
         ] = True
-        ends = [[motion_of(body, self._carrier, self._controlled) for body in pair] for pair in joints]
+        ends = [[motion_of(body, self._carrier, self._prescribed) for body in pair] for pair in joints]
         pairs = np.array([pair for pair in ends if None not in pair], dtype=np.int64).reshape(-1, 2)
         graph = sparse.coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
         parts = connected_components(graph, directed=False)[1]

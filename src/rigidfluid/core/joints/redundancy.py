@@ -14,20 +14,20 @@ _LEAST = 1e-8
 """Rows of length one that are nearer than this to what others span are redundant [1]."""
 
 
-def refuse_void(constraints: Sequence[Constraint], carrier: IntArray, controlled: BoolArray) -> None:
+def refuse_void(constraints: Sequence[Constraint], carrier: IntArray, prescribed: BoolArray) -> None:
     """Refuse what has no free relative motion to hold, for bodies on motions ``carrier`` (n,) of which some (N,) are
     given."""
     for constraint in constraints:
-        ends = [motion_of(body, carrier, controlled) for body in constraint.markers.bodies]
+        ends = [motion_of(body, carrier, prescribed) for body in constraint.markers.bodies]
         if ends[0] == ends[1]:
             found = "nothing that moves freely" if ends[0] is None else "parts of one mechanism"
             remedy = "Leave it out, or join a body that is free to move."
             raise SceneError(constraint.name, found, "bodies that move relatively to each other", remedy)
 
 
-def motion_of(body: int | None, carrier: IntArray, controlled: BoolArray) -> int | None:
+def motion_of(body: int | None, carrier: IntArray, prescribed: BoolArray) -> int | None:
     """Number of the free motion that carries a body; None for the ground and for prescribed motions."""
-    return None if body is None or controlled[carrier[body]] else int(carrier[body])
+    return None if body is None or prescribed[carrier[body]] else int(carrier[body])
 
 
 def refuse_redundant(constraints: Sequence[Constraint], rows: FloatArray) -> None:

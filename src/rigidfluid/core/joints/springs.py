@@ -40,9 +40,9 @@ class GroundSpring:
 
     def add_wrench(self, pose: Pose, wrench: Wrench) -> None:
         displaced, d = self._displacement(pose), len(self.position)
-        pull = -self.stiffness * displaced
-        wrench.force[self.body] += pull[:d]
-        wrench.torque[self.body] += pull[d:] if d == 2 else _inverse_left_jacobian(displaced[d:]).T @ pull[d:]
+        load = -self.stiffness * displaced
+        wrench.force[self.body] += load[:d]
+        wrench.torque[self.body] += load[d:] if d == 2 else _inverse_left_jacobian(displaced[d:]).T @ load[d:]
 
     def stretch(self, pose: Pose) -> FloatArray:
         width = len(self.stiffness)

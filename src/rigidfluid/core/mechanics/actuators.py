@@ -40,4 +40,4 @@ def actuator_work(system: System, state: State, end: BodiesAfter, kinematics: Ki
     gained[:, : system.dimension] -= end.size * system.weight
     if state.applied is not None:
         gained -= end.size * flat(state.applied)
-    return 0.5 * float(np.sum((before.given + kinematics.given) * gained))
+    return 0.5 * float(np.sum((before.relative_twist + kinematics.relative_twist) * gained))

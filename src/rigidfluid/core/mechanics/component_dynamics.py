@@ -53,9 +53,9 @@ class ComponentDynamics:
     def motion_twist(self) -> Twist:
         return self._motions.twist
 
-    def prescribed_twist(self, controlled: BoolArray) -> Twist:
-        """Prescribed part of the bodies' twists, n rows, where some motions (N,) are ``controlled``."""
-        twist, given = self._motions.twist, controlled[:, None]
+    def prescribed_part(self, prescribed: BoolArray) -> Twist:
+        """Prescribed part of the bodies' twists, n rows, where some motions (N,) are ``prescribed``."""
+        twist, given = self._motions.twist, prescribed[:, None]
         return self.kinematics.component_twist(Twist(given * twist.velocity, given * twist.angular_velocity))
 
     @property
@@ -73,18 +73,18 @@ class ComponentDynamics:
         """Work of joints on the motions so far."""
         return self._motions.link_work
 
-    def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
+    def inverse_mass_along(self, body: IntArray, direction: FloatArray) -> FloatArray:
         """Inverse mass e·(G M⁻¹ Gᵀ)e of the motion as its body feels it, (m,) [1/mass]."""
         motion = self.kinematics.carrier[body]
         turning = moment(self.kinematics.arm[body], direction)
-        straight = self._motions.inverse_mass(motion, direction)
+        straight = self._motions.inverse_mass_along(motion, direction)
         return np.asarray(straight + np.einsum("mi,mij,mj->m", turning, self._motions.inverse_inertia[motion], turning))
 
     @property
-    def mobility(self) -> FloatArray:
+    def inverse_mass(self) -> FloatArray:
         carrier, lever = self.kinematics.carrier, levers(self.kinematics.arm)
         turning = lever @ self._motions.inverse_inertia[carrier] @ np.swapaxes(lever, -1, -2)
-        return np.asarray(self._motions.mobility[carrier] + turning)
+        return np.asarray(self._motions.inverse_mass[carrier] + turning)
 
     @property
     def inverse_inertia(self) -> FloatArray:
@@ -103,14 +103,14 @@ class ComponentDynamics:
     def max_acceleration(self, time: float) -> FloatArray:
         """Greatest acceleration of each body (n,): the motion's, |α| |arm| + |ω|² |arm| by its rotation, and the change
         of the relative velocity over the time [length/time²]."""
-        now, pull = self.kinematics, self._motions.angular_pull(time)
+        now, angular = self.kinematics, self._motions.max_angular_acceleration(time)
         if self._load is not None:
             torque = now.motion_wrench(self._load).torque
-            pull = pull + np.linalg.norm(np.einsum("nij,nj->ni", self._motions.inverse_inertia, torque), axis=1)
+            angular = angular + np.linalg.norm(np.einsum("nij,nj->ni", self._motions.inverse_inertia, torque), axis=1)
         spin = np.linalg.norm(self._motions.twist.angular_velocity, axis=1)
-        turning = (pull + spin**2)[now.carrier] * np.linalg.norm(now.arm, axis=1)
+        turning = (angular + spin**2)[now.carrier] * np.linalg.norm(now.arm, axis=1)
         later = self._carried.kinematics(self._motions.pose, self._time + time)
-        change = np.linalg.norm((later.given - now.given)[:, : now.arm.shape[1]], axis=1)
+        change = np.linalg.norm((later.relative_twist - now.relative_twist)[:, : now.arm.shape[1]], axis=1)
         return np.asarray(self._motions.max_acceleration(time)[now.carrier] + turning + change / time)
 
     def kick(self, wrench: Wrench, time: float, at: Kinematics | None = None) -> None:

@@ -22,7 +22,7 @@ class DrivenDynamics(DryDynamics):
     h(t) is constant between kicks, and the orientation follows by the midpoint rule; all else is as in `DryDynamics`.
 
     ``mechanisms`` give masses, I and h, which is zero without relative motion; ``weight`` (N, d) is constant [force];
-    ``start`` is the time at the start [time]; ``controlled_twist`` gives the twist (N, d+k) of prescribed motions from
+    ``start`` is the time at the start [time]; ``prescribed_twist`` gives the twist (N, d+k) of prescribed motions from
     a time since the start.
     """
 
@@ -33,10 +33,10 @@ class DrivenDynamics(DryDynamics):
         mechanisms: Motions,
         weight: FloatArray,
         start: float,
-        controlled_twist: Callable[[float], FloatArray],
+        prescribed_twist: Callable[[float], FloatArray],
     ) -> None:
         inertia = mechanisms.inertia(start)
-        super().__init__(pose, twist, mechanisms.mass, inertia, weight, mechanisms.controlled, controlled_twist)
+        super().__init__(pose, twist, mechanisms.mass, inertia, weight, mechanisms.prescribed, prescribed_twist)
         self._mechanisms, self._start, self._ahead = mechanisms, start, 0.0
         self._momentum = self._momentum + turned(pose.orientation, mechanisms.spin(start))
 

@@ -30,7 +30,7 @@ class DryDynamics(OwnMotions):
     """Newton–Euler without a fluid: m dU/dt = F + W, d(R I Rᵀ ω)/dt = T, between kicks exact.
 
     ``mass`` (n,) [mass]; ``inertia`` (n, k, k) in each body's frame [mass·length²]; ``weight`` W (n, d), all constant
-    forces [force]; ``controlled`` (n,), whether the twist is prescribed, by ``controlled_twist`` from a time since the
+    forces [force]; ``prescribed`` (n,), whether the twist is, by ``prescribed_twist`` from a time since the
     start to (n, d+k); ``turning``: constant torques, None without.
     """
 
@@ -44,15 +44,15 @@ class DryDynamics(OwnMotions):
         mass: FloatArray,
         inertia: FloatArray,
         weight: FloatArray,
-        controlled: BoolArray,
-        controlled_twist: Callable[[float], FloatArray],
+        prescribed: BoolArray,
+        prescribed_twist: Callable[[float], FloatArray],
         turning: Turning | None = None,
     ) -> None:
         self.pose, self._turning = pose, turning
-        self._free = ~controlled[:, None]
+        self._free = ~prescribed[:, None]
         self._mass, self._inertia, self._weight = mass, inertia, weight
-        self._given, self._time = controlled_twist, 0.0
-        self._driven = bool(controlled.any())
+        self._prescribed_twist, self._time = prescribed_twist, 0.0
+        self._any_prescribed = bool(prescribed.any())
         self._velocity = twist.velocity.copy()
         self._inverse: FloatArray = np.asarray(np.linalg.inv(inertia), dtype=np.float64)
         self._round = bool(np.all(inertia == inertia[:, :1, :1] * np.eye(inertia.shape[1])))
@@ -63,12 +63,12 @@ class DryDynamics(OwnMotions):
     def twist(self) -> Twist:
         return Twist(self._velocity.copy(), np.einsum("nij,nj->ni", self._inverse_inertia(), self._momentum))
 
-    def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
+    def inverse_mass_along(self, body: IntArray, direction: FloatArray) -> FloatArray:
         """Inverse mass 1/m, whatever the direction."""
         return np.asarray(self._free[body, 0] / self._mass[body])
 
     @property
-    def mobility(self) -> FloatArray:
+    def inverse_mass(self) -> FloatArray:
         return np.asarray((self._free / self._mass[:, None])[:, :, None] * np.eye(self._velocity.shape[1]))
 
     @property
@@ -77,7 +77,7 @@ class DryDynamics(OwnMotions):
 
     def inverse_masses(self, time: float) -> sparse.csr_matrix:
         """Matrix of 1/m and (R I Rᵀ)⁻¹, whatever the time."""
-        return block_diagonal(self.mobility, self.inverse_inertia)
+        return block_diagonal(self.inverse_mass, self.inverse_inertia)
 
     def copied(self) -> Self:
         """Copy with momenta of its own, which kicks change in place."""
@@ -92,14 +92,14 @@ class DryDynamics(OwnMotions):
         if self._turning is not None:
             lightest = np.linalg.eigvalsh(self._inverse)[:, -1]
             fall = fall + self._turning.arm * lightest * np.linalg.norm(self._turning.torque, axis=1)
-        if not self._driven:
+        if not self._any_prescribed:
             return np.asarray(fall)
-        now, d = self._given(self._time), self._velocity.shape[1]
-        later = [self._given(self._time + part * time) for part in _PARTS]
+        now, d = self._prescribed_twist(self._time), self._velocity.shape[1]
+        later = [self._prescribed_twist(self._time + part * time) for part in _PARTS]
         change = np.max([np.linalg.norm((given - now)[:, :d], axis=1) for given in later], axis=0)
         return np.asarray(np.where(self._free[:, 0], fall, change / time))
 
-    def angular_pull(self, time: float) -> FloatArray:
+    def max_angular_acceleration(self, time: float) -> FloatArray:
         """Zero (n,): a body that turns freely keeps its angular momentum."""
         return np.zeros(len(self._mass))
 
@@ -114,7 +114,7 @@ class DryDynamics(OwnMotions):
     def begin(self, ahead: float) -> None:
         """No-op: these motions have no prescribed velocity jump."""
 
-    def push(self, impulse: FloatArray) -> None:
+    def apply_impulse(self, impulse: FloatArray) -> None:
         """Change momenta by impulses (n, d+k) at once."""
         d = self._velocity.shape[1]
         self._velocity = self._velocity + self._free * impulse[:, :d] / self._mass[:, None]
@@ -124,16 +124,16 @@ class DryDynamics(OwnMotions):
         """Move straight on and turn freely; move prescribed bodies with their twist in mid-time."""
         from rigidfluid.core.mechanics.free_rotation import rotate_freely
 
-        if self._driven:
-            self._drive(self._time + 0.5 * time)
+        if self._any_prescribed:
+            self._prescribe(self._time + 0.5 * time)
         orientation = rotate_freely(self.pose.orientation, self._momentum, self._inertia, time)
         self.pose = Pose(self.pose.position + time * self._velocity, orientation)
         self._time += time
-        if self._driven:
-            self._drive(self._time)
+        if self._any_prescribed:
+            self._prescribe(self._time)
 
-    def _drive(self, time: float) -> None:
-        given, d = self._given(time), self._velocity.shape[1]
+    def _prescribe(self, time: float) -> None:
+        given, d = self._prescribed_twist(time), self._velocity.shape[1]
         self._velocity = np.where(self._free, self._velocity, given[:, :d])
         spin = np.einsum("nij,nj->ni", lab_inertia(self._inertia, self.pose.orientation), given[:, d:])
         self._momentum = np.where(self._free, self._momentum, spin)

@@ -43,8 +43,8 @@ def step_to(system: System, state: State, end: StepEnd, points: FloatArray | Non
         points=points,
         mass_matrix=mass_matrix,
         load=load,
-        controlled=system.motions.controlled,
-        controlled_twist=system.controlled_twist(time),
+        prescribed=system.motions.prescribed,
+        prescribed_twist=system.prescribed_twist(time),
         impulse=flat(end.impulse),
         load_scale=_load_scale(system, state, end.impulse, derivative),
         turning=np.zeros_like(load),
@@ -72,7 +72,7 @@ def _newton_euler(
     poses, twists = [moment.pose for moment in past], [moment.twist for moment in past]
     applied = applied_wrench(system, state, kinematics)
     pushed = wrench_sum(impulse, Wrench(size * applied.force, size * applied.torque))
-    pushed = mean_push(pushed, _latest_push(system, state), state.past_step, derivative)
+    pushed = mean_contact_wrench(pushed, _latest_wrench(system, state), state.past_step, derivative)
     pushed = system.solved_joints.with_springs(pushed, pose, time)
     motions, wrench = system.motions, wrench_sum(pushed, weights(system, kinematics))
     inertia = motions.inertia(time)
@@ -82,7 +82,7 @@ def _newton_euler(
     return mass_matrix, load
 
 
-def _latest_push(system: System, state: State) -> Wrench:
+def _latest_wrench(system: System, state: State) -> Wrench:
     """Mean wrench on the motions in the latest step: contacts, applied wrenches, and without a fluid joints, which
     enter the time scheme in the same way."""
     pushed = state.motions.contact
@@ -111,12 +111,12 @@ def _load_scale(system: System, state: State, impulse: Wrench, derivative: Float
 
     Their sum is rounding there, and no residual can be made small relative to it.
     """
-    pushed = derivative[0] * np.linalg.norm(impulse.force[~system.motions.controlled])
+    pushed = derivative[0] * np.linalg.norm(impulse.force[~system.motions.prescribed])
     applied = 0.0 if state.applied is None else np.linalg.norm(state.applied.force)
-    return float(0.01 * max(np.linalg.norm(system.weight[~system.controlled]), pushed, applied))
+    return float(0.01 * max(np.linalg.norm(system.weight[~system.prescribed]), pushed, applied))
 
 
-def mean_push(impulse: Wrench, latest: Wrench, past_step: float | None, derivative: FloatArray) -> Wrench:
+def mean_contact_wrench(impulse: Wrench, latest: Wrench, past_step: float | None, derivative: FloatArray) -> Wrench:
     """Wrench of the contacts in the time scheme, d₀ Jⁿ⁺¹ - d₂ Jⁿ with J the impulse of a step.
 
     The scheme differences momentum less the impulses received so far: an impact shorter than the step changes the

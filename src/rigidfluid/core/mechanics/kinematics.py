@@ -18,13 +18,13 @@ class CarriedKinematics:
 
     Component i is carried by motion ``carrier[i]`` (n,), whose centre of mass is at ``centre`` (N, d); ``arm`` (n, d)
     leads from there to the component's [length]. (G u)ᵢ = (U + ω × armᵢ, ω) of the motion's velocities u = (U, ω).
-    ``given`` (n, d+k): g, the twist that relative motion adds [length/time, rad/time].
+    ``relative_twist`` (n, d+k): g, that of relative motion [length/time, rad/time].
     """
 
     carrier: IntArray
     centre: FloatArray
     arm: FloatArray
-    given: FloatArray
+    relative_twist: FloatArray
 
     def centres(self, bodies: Pose) -> FloatArray:
         return self.centre
@@ -33,12 +33,12 @@ class CarriedKinematics:
         """Twists of the bodies, Uᵢ = U + ω × armᵢ + gᵢ, ωᵢ = ω + gᵢ."""
         d, spin = self.arm.shape[1], motion.angular_velocity[self.carrier]
         velocity = motion.velocity[self.carrier] + cross(spin, self.arm)
-        return Twist(velocity + self.given[:, :d], spin + self.given[:, d:])
+        return Twist(velocity + self.relative_twist[:, :d], spin + self.relative_twist[:, d:])
 
     def motion_twist(self, twist: FloatArray) -> FloatArray:
         """Twists of the motions, read from the first body of each."""
         d, first = self.arm.shape[1], np.unique(self.carrier, return_index=True)[1]
-        free = twist[first] - self.given[first]
+        free = twist[first] - self.relative_twist[first]
         free[:, :d] -= cross(free[:, d:], self.arm[first])
         return free
 
@@ -53,25 +53,25 @@ class CarriedKinematics:
         whole = np.concatenate([rows[..., :d], rows[..., d:] + turning], axis=2)
         return np.swapaxes(carried_sum(self.carrier, np.swapaxes(whole, 0, 1), len(self.centre)), 0, 1)
 
-    def prescribed(self, controlled: BoolArray, twist: Twist) -> BoolArray:
-        """Whether the prescribed part is not zero, be it by a controlled motion or by relative motion."""
+    def has_prescribed_part(self, prescribed: BoolArray, twist: Twist) -> BoolArray:
+        """Whether the prescribed part is not zero, be it by a prescribed motion or by relative motion."""
         return np.asarray(np.any(twist.velocity, axis=1) | np.any(twist.angular_velocity, axis=1))
 
-    def body_rates(self, rate: FloatArray, motion: Twist, given_rate: FloatArray) -> FloatArray:
+    def body_rates(self, rate: FloatArray, motion: Twist, relative_rate: FloatArray) -> FloatArray:
         """Accelerations A + α × arm + ω × (ω × arm) of the motions that carry the bodies, and that of g."""
         d, carrier = self.arm.shape[1], self.carrier
         spin = motion.angular_velocity[carrier]
         turning = cross(rate[carrier, d:], self.arm) + cross(spin, cross(spin, self.arm))
         carried = np.concatenate([rate[carrier, :d] + turning, rate[carrier, d:]], axis=1)
-        return np.asarray(carried + given_rate)
+        return np.asarray(carried + relative_rate)
 
 
-def given_twist(step: Step) -> tuple[Twist, BoolArray]:
+def prescribed_part(step: Step) -> tuple[Twist, BoolArray]:
     """Prescribed part of the bodies' twists in a step, n rows, and whether a body has one (n,)."""
     d = step.pose.position.shape[1]
-    controlled = np.where(step.controlled[:, None], step.controlled_twist, 0.0)
-    given = step.kinematics.component_twist(Twist(controlled[:, :d], controlled[:, d:]))
-    return given, step.kinematics.prescribed(step.controlled, given)
+    motion = np.where(step.prescribed[:, None], step.prescribed_twist, 0.0)
+    twist = step.kinematics.component_twist(Twist(motion[:, :d], motion[:, d:]))
+    return twist, step.kinematics.has_prescribed_part(step.prescribed, twist)
 
 
 def carried_sum(carrier: IntArray, rows: FloatArray, motions: int) -> FloatArray:
@@ -84,7 +84,7 @@ def carried_sum(carrier: IntArray, rows: FloatArray, motions: int) -> FloatArray
 def jacobian(kinematics: CarriedKinematics) -> sparse.csr_matrix:
     """Matrix G (n·(d+k), N·(d+k)) from velocities of the motions to those of the bodies."""
     count, d = kinematics.arm.shape
-    width = kinematics.given.shape[1]
+    width = kinematics.relative_twist.shape[1]
     block = np.tile(np.eye(width), (count, 1, 1))
     block[:, :d, d:] = levers(kinematics.arm)
     rows = (width * np.arange(count)[:, None, None] + np.arange(width)[:, None] + np.zeros(width, dtype=int)).ravel()

@@ -33,7 +33,7 @@ class CarriedBodies:
     """Single bodies, each its own motion, and after them the ``mechanisms`` with their components.
 
     ``mass`` (n,) [mass] and ``inertia`` (n, k, k) in each body's frame [mass·length²] are those of single bodies and of
-    all components in order; ``controlled`` (n,): whether a single body's motion is prescribed; ``pose`` and ``twist``:
+    all components in order; ``prescribed`` (n,): whether a single body's motion is; ``pose`` and ``twist``:
     the N motions at the start.
     """
 
@@ -42,7 +42,7 @@ class CarriedBodies:
         mechanisms: Mapping[str, Mechanism],
         mass: FloatArray,
         inertia: FloatArray,
-        controlled: BoolArray,
+        prescribed: BoolArray,
         pose: Pose,
         twist: Twist,
     ) -> None:
@@ -51,7 +51,7 @@ class CarriedBodies:
         single = len(mass) - sum(sizes)
         owner = np.repeat(np.arange(single, single + len(sizes)), sizes)
         self.carrier: IntArray = np.concatenate([np.arange(single), owner])
-        self.controlled: BoolArray = np.append(controlled[:single], np.zeros(len(sizes), dtype=bool))
+        self.prescribed: BoolArray = np.append(prescribed[:single], np.zeros(len(sizes), dtype=bool))
         self.mass = carried_sum(self.carrier, mass, single + len(sizes))
         self.pose, self.twist = pose, twist
         self.driven_motions: BoolArray = np.array([False] * single + [one.driven for one in self._mechanisms])
@@ -131,14 +131,14 @@ class CarriedBodies:
         load: Wrench,
         arms: FloatArray,
         start: float,
-        controlled_twist: Callable[[float], FloatArray],
+        prescribed_twist: Callable[[float], FloatArray],
     ) -> DryDynamics:
         """Dynamics that know the force of the load; its torque about the centres is `carry`'s."""
         force = self.sums(load.force)
         if self.driven:
-            return DrivenDynamics(now.pose, now.twist, self, force, start, controlled_twist)
-        own = self.mass, self.inertia(start), force, self.controlled
-        return DryDynamics(now.pose, now.twist, *own, controlled_twist)
+            return DrivenDynamics(now.pose, now.twist, self, force, start, prescribed_twist)
+        own = self.mass, self.inertia(start), force, self.prescribed
+        return DryDynamics(now.pose, now.twist, *own, prescribed_twist)
 
     def carry(self, motions: MotionDynamics, start: float, load: Wrench | None = None) -> ComponentDynamics:
         return ComponentDynamics(motions, self, start, load)

@@ -64,14 +64,14 @@ def kinematics_now(system: System, state: State) -> Kinematics:
 def accelerations(system: System, state: State) -> FloatArray:
     """Accelerations of the motions (N, d+k) in the latest step, less the share of contacts, plus that of wrenches
     applied since; at the start those by weight and applied wrenches [length/time² | rad/time²]."""
-    linear, angular = mobility(system, state)
+    linear, angular = own_inverse_masses(system, state)
     if state.past is None:
-        return _answer(linear, angular, outer_load(system, state))
+        return _acceleration(linear, angular, outer_load(system, state))
     rate = (flat(state.motions.twist) - flat(state.past.twist)) / state.past.step
-    rate -= _answer(linear, angular, state.motions.contact)
+    rate -= _acceleration(linear, angular, state.motions.contact)
     if state.applied is None:
         return rate
-    return rate + _answer(linear, angular, newly_applied(system, state))
+    return rate + _acceleration(linear, angular, newly_applied(system, state))
 
 
 def body_accelerations(system: System, state: State, time: float, size: float) -> FloatArray:
@@ -79,22 +79,22 @@ def body_accelerations(system: System, state: State, time: float, size: float) -
     from ``time`` on over ``size`` [length/time² | rad/time²]."""
     rate, motions = accelerations(system, state), system.motions
     now, later = (motions.kinematics(state.motions.pose, when) for when in (time, time + size))
-    return now.body_rates(rate, state.motions.twist, (later.given - now.given) / size)
+    return now.body_rates(rate, state.motions.twist, (later.relative_twist - now.relative_twist) / size)
 
 
-def _answer(linear: FloatArray, angular: FloatArray, wrench: Wrench) -> FloatArray:
+def _acceleration(linear: FloatArray, angular: FloatArray, wrench: Wrench) -> FloatArray:
     """Acceleration M⁻¹ W of the motions by a wrench W on them (N, d+k)."""
     by_force = np.einsum("nij,nj->ni", linear, wrench.force)
     return np.concatenate([by_force, np.einsum("nij,nj->ni", angular, wrench.torque)], axis=1)
 
 
-def mobility(system: System, state: State) -> tuple[FloatArray, FloatArray]:
+def own_inverse_masses(system: System, state: State) -> tuple[FloatArray, FloatArray]:
     """Inverse mass (N, d, d), with the added mass of bodies, and inverse inertia (N, k, k) of each motion alone in the
     lab frame, zero for prescribed motions [1/mass | 1/(mass·length²)]."""
     rotation = rotation_matrices(state.pose.orientation)
     own = system.mass[:, None, None] * np.eye(system.dimension)
     mass = own + rotation @ system.added_mass @ np.swapaxes(rotation, -1, -2)
-    free = ~system.motions.controlled[:, None, None]
+    free = ~system.motions.prescribed[:, None, None]
     linear, angular = system.motions.inverse_masses(mass, state.pose, state.motions.pose.position)
     return free * linear, free * angular
 

@@ -31,6 +31,6 @@ class OwnMotions:
         """The bodies themselves, after the ``impulse`` of contacts on them."""
         return MotionState(self.pose, self.twist, impulse, nothing(self.pose))
 
-    def prescribed_twist(self: BodyDynamics, controlled: BoolArray) -> Twist:
+    def prescribed_part(self: BodyDynamics, prescribed: BoolArray) -> Twist:
         """Twists, valid where a body is prescribed."""
         return self.twist

@@ -23,8 +23,8 @@ class SingleBodies:
     names: tuple[str, ...] = ()
     driven: bool = False
 
-    def __init__(self, mass: FloatArray, inertia: FloatArray, controlled: BoolArray, pose: Pose, twist: Twist) -> None:
-        self.mass, self._inertia, self.controlled, self.pose, self.twist = mass, inertia, controlled, pose, twist
+    def __init__(self, mass: FloatArray, inertia: FloatArray, prescribed: BoolArray, pose: Pose, twist: Twist) -> None:
+        self.mass, self._inertia, self.prescribed, self.pose, self.twist = mass, inertia, prescribed, pose, twist
         self.carrier: IntArray = np.arange(len(mass))
         self.driven_motions: BoolArray = np.zeros(len(mass), dtype=bool)
 
@@ -73,11 +73,11 @@ class SingleBodies:
         load: Wrench,
         arms: FloatArray,
         start: float,
-        controlled_twist: Callable[[float], FloatArray],
+        prescribed_twist: Callable[[float], FloatArray],
     ) -> DryDynamics:
         turning = Turning(load.torque, arms) if load.torque.any() else None
-        own = self.mass, self._inertia, load.force, self.controlled
-        return DryDynamics(now.pose, now.twist, *own, controlled_twist, turning)
+        own = self.mass, self._inertia, load.force, self.prescribed
+        return DryDynamics(now.pose, now.twist, *own, prescribed_twist, turning)
 
     def carry(self, motions: MotionDynamics, start: float, load: Wrench | None = None) -> MotionDynamics:
         return motions

@@ -27,7 +27,7 @@ DOUBTFUL = 0.5 * (1.0 + SQUEEZED)
 other mesh is made; and for a cell whose quality it leaves below `LEAST_QUALITY`."""
 
 LEAST_QUALITY = 0.2
-"""A mesh is made anew at half of the quality that it had, and no cell is to be worse than 0.1."""
+"""A mesh is regenerated at half of the quality that it had, and no cell is to be worse than 0.1."""
 
 NARROW = 1.5
 """A cell is in a gap that is at most this many times wider than the cell's longest edge."""

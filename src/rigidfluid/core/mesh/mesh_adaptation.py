@@ -1,4 +1,4 @@
-"""Decides when a mesh that only moves must be made anew, and carries the fluid over.
+"""Decides when a mesh that only moves must be regenerated, and carries the fluid over.
 
 The root makes each mesh and holds it whole meanwhile; every rank moves its own part.
 """
@@ -37,12 +37,12 @@ TANGLED = 0.02
 """A mesh with a cell below this quality is not solved on."""
 
 NEARLY_TANGLED = 2.0 * TANGLED
-"""A moved mesh is made anew before a cell tangles, however low a quality is asked for."""
+"""A moved mesh is regenerated before a cell tangles, however low a quality is asked for."""
 
 
 @dataclass(frozen=True)
 class Renewal:
-    """Conditions on which a mesh is made anew.
+    """Conditions on which a mesh is regenerated.
 
     Its worst cell has fallen below ``quality``, or is nearly tangled, and below half of what it was when made; or it is
     ``oldest`` ticks old. For ``pause`` ticks after a mesh could not be made, none is tried unless a cell is nearly

@@ -15,7 +15,7 @@ from rigidfluid.core.mesh.topology import share_no_cell
 from rigidfluid.core.model.types import Mesh
 
 GOOD_QUALITY = 0.3
-"""Vertices of cells below this quality are moved. A mesh is made anew at half of its worst cell's, well above 0.1."""
+"""Vertices of cells below this quality are moved. A mesh is regenerated at half of its worst cell's, well above 0.1."""
 
 FIRST, LAST = 0.2, 0.05
 """Lengths of the first and the last moves that are tried, over the shortest edge at the vertex."""

@@ -49,17 +49,17 @@ class Detection(ABC):
         """Contacts that the detector found at ``pose``, those of balls between the round shapes themselves."""
 
     @abstractmethod
-    def look_ahead(self, near: FollowedContacts, movement: BodyDynamics, size: float) -> Sight:
+    def look_ahead(self, near: FollowedContacts, dynamics: BodyDynamics, size: float) -> Sight:
         """Sight for a step of this ``size`` [time] at the present speeds, with the contacts ``near`` at its start."""
 
     @abstractmethod
-    def widened(self, sight: Sight, movement: BodyDynamics, size: float) -> Sight:
+    def widened(self, sight: Sight, dynamics: BodyDynamics, size: float) -> Sight:
         """Sight for the present speeds if that reaches farther, else this one: speeds at the start of a step do not
         show the energy that contacts store at a turning point."""
 
     @abstractmethod
     def followed(
-        self, near: FollowedContacts, law: ForceLaw, movement: BodyDynamics, size: float, reach: float
+        self, near: FollowedContacts, law: ForceLaw, dynamics: BodyDynamics, size: float, reach: float
     ) -> tuple[Contacts, FollowedContacts]:
         """Contacts now, and the same followed over a part of a step of this ``size`` [time]: those ``near`` at the
         step's start, or all that may come into range and at least those within ``reach`` [length]."""

@@ -18,7 +18,7 @@ class Domain(SpatialPart):
     """A bounded region, its boundary made of named pieces.
 
     Surfaces are numbered through, the n bodies first: piece i is surface n + i. Nodes of the mesh slide along flat
-    pieces across an axis, and are held on all others. When the mesh is made anew, nodes of flat pieces are put back
+    pieces across an axis, and are held on all others. When the mesh is regenerated, nodes of flat pieces are put back
     into all their planes; the facets of other pieces are kept as those of bodies are, or halved with the new node on
     the closest point of the piece.
 

@@ -16,12 +16,12 @@ from rigidfluid.core.model.types import Pose, Twist, Wrench
 @dataclass(frozen=True, slots=True)
 class LinkWork:
     """Sums over the work of joints: the ``impulse`` (c,) of each link [force·time | force·length·time], the ``pushed``
-    (N, d+k) impulse of all links and springs on the motions, the energies ``driven`` into the motions by prescribed
-    ones and ``damped`` away [energy]."""
+    (N, d+k) impulse of all links and springs on the motions, the energies ``drive_work``, put into the motions by
+    prescribed ones, and ``damped`` away [energy]."""
 
     impulse: FloatArray
     pushed: FloatArray
-    driven: float
+    drive_work: float
     damped: float
 
     def load(self, time: float) -> LinkLoad:
@@ -48,11 +48,11 @@ class BodyDynamics(Protocol):
     def twist(self) -> Twist:
         """Present twist."""
 
-    def inverse_mass(self, body: IntArray, direction: FloatArray) -> FloatArray:
+    def inverse_mass_along(self, body: IntArray, direction: FloatArray) -> FloatArray:
         """Inverse mass e·M⁻¹e of some bodies (m,) in directions e (m, d), (m,); zero for prescribed bodies [1/mass]."""
 
     @property
-    def mobility(self) -> FloatArray:
+    def inverse_mass(self) -> FloatArray:
         """Inverse mass M⁻¹ of each body alone in translation (n, d, d), zero for prescribed bodies [1/mass]."""
 
     @property
@@ -79,8 +79,8 @@ class BodyDynamics(Protocol):
     def motions(self, impulse: Wrench) -> MotionState:
         """Motions that carry the bodies, after the ``impulse`` of contacts on these."""
 
-    def prescribed_twist(self, controlled: BoolArray) -> Twist:
-        """Prescribed part of the bodies' twists, n rows, valid where a body has one; the motions ``controlled`` (N,)
+    def prescribed_part(self, prescribed: BoolArray) -> Twist:
+        """Prescribed part of the bodies' twists, n rows, valid where a body has one; the motions ``prescribed`` (N,)
         are prescribed."""
 
     def copied(self) -> Self:
@@ -102,16 +102,16 @@ class BodyDynamics(Protocol):
 class MotionDynamics(BodyDynamics, Protocol):
     """Dynamics of the motions themselves."""
 
-    def angular_pull(self, time: float) -> FloatArray:
+    def max_angular_acceleration(self, time: float) -> FloatArray:
         """Greatest angular acceleration of each motion (N,) within ``time`` from now, contacts apart [rad/time²]."""
 
 
-class PushedDynamics(MotionDynamics, Protocol):
+class ImpulsiveDynamics(MotionDynamics, Protocol):
     """Dynamics of motions that impulses can change at once, as those of rigid joints do."""
 
     def begin(self, ahead: float) -> None:
         """Read prescribed rates no earlier than ``ahead`` after the start [time], so that a jump of them at the start
         is in the twist before the first drift."""
 
-    def push(self, impulse: FloatArray) -> None:
+    def apply_impulse(self, impulse: FloatArray) -> None:
         """Change the twist at once by impulses (N, d+k) [force·time | force·length·time]."""

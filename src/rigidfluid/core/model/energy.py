@@ -29,7 +29,7 @@ class Power:
     dissipation: float = 0.0
     dissipation_midway: float = 0.0
     damping: float = 0.0
-    leak: float = 0.0
+    spurious_flux: float = 0.0
     grad_div: float = 0.0
     source: float = 0.0
     stress_power: float | None = None
@@ -58,7 +58,7 @@ class Ledger:
     ``transfer_loss`` (by re-meshing).
     ``path_friction`` is no part of the balance: of what it leaves unaccounted for, friction in impacts shorter than a
     step explains so much at most, since the fluid's own solutions see some of it.
-    The residual has five parts. ``residual_mesh``: what leaked through faces. The rest of each step's is in
+    The residual has five parts. ``residual_mesh``: spurious flux through faces. The rest of each step's is in
     ``residual_start``, ``residual_remeshing`` or ``residual_contacts`` where a `Cause` is named for it, and else in
     ``residual_steps``; ``in_impact`` says whether contacts were the cause in the latest step, and ``smooth_rate`` is
     how fast the residual grew in the latest step without a cause [energy/time].
@@ -146,14 +146,15 @@ class Ledger:
             grad_div_loss=total("grad_div", self.grad_div_loss),
             contact_loss=self.contact_loss + work.contact_loss + damped,
             path_friction=self.path_friction + work.path_friction,
-            residual_mesh=total("leak", self.residual_mesh),
+            residual_mesh=total("spurious_flux", self.residual_mesh),
             since_start=self.since_start + step,
             power=power,
         )
 
     def attributed(self, before: Ledger, step: float, cause: Cause | None) -> Ledger:
-        """This ledger with the growth of the residual in a ``step`` since ``before``, beyond what leaked, put to the
-        ``cause``; to re-meshing, as far as more grew, or otherwise, than in as much time of smooth motion before it."""
+        """This ledger with the growth of the residual in a ``step`` since ``before``, beyond the spurious flux, put to
+        the ``cause``; to re-meshing, as far as more grew, or otherwise, than in as much time of smooth motion before
+        it."""
         grown = self.residual - before.residual - (self.residual_mesh - before.residual_mesh)
         if cause is None:
             return replace(self, in_impact=False, smooth_rate=grown / step)

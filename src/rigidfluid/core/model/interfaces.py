@@ -173,7 +173,7 @@ class Mechanism(SpatialPart):
     def next_corner(self, time: float) -> float:
         """The first time after this at which the rate jumps; infinite where it does not [time].
 
-        A step ends there, or less than a tick before, and the next begins anew. The rate at a corner is that before it,
+        A step ends there, or less than a tick before, and the next restarts. The rate at a corner is that before it,
         at time 0 that after it.
         """
         return math.inf
@@ -340,7 +340,7 @@ class FluidBackend(Part):
         """The same for a fluid at rest when faces were set in motion as well, with what they have at time 0; and the
         twists of the motions then, free ones by their masses and the fluid's.
 
-        Before, the bodies had ``twist``; the ``step`` is so short that masses alone answer. Without this method such
+        Before, the bodies had ``twist``; the ``step`` is so short that masses alone respond. Without this method such
         a fluid is set in motion by its first step.
         """
         return None
@@ -376,8 +376,8 @@ class FluidBackend(Part):
         """Velocity (N, d) and pressure (N,) at ``points`` (N, d); outside the mesh the nearest cell's values."""
 
     @abstractmethod
-    def unknowns(self, mesh: Mesh, controlled: BoolArray) -> int:
-        """Number of unknowns of one step on this mesh, with the twists of the ``controlled`` motions (N,)
+    def unknowns(self, mesh: Mesh, prescribed: BoolArray) -> int:
+        """Number of unknowns of one step on this mesh, with the twists of the ``prescribed`` motions (N,)
         prescribed."""
 
     def solver_cost(self, cells: float, facets: float) -> SolverCost | None:

@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
-from rigidfluid.core.model.dynamics import MotionDynamics, PushedDynamics
+from rigidfluid.core.model.dynamics import ImpulsiveDynamics, MotionDynamics
 from rigidfluid.core.model.state import LinkLoad, unloaded
 from rigidfluid.core.model.types import NO_LINKS, Links, Pose, Twist, Wrench
 
@@ -81,7 +81,7 @@ class Joints(Protocol):
     def fitting(self, motions: Pose, twist: Twist, time: float) -> Twist:
         """The ``twist``, N rows, after impulses of the rigid joints that make it satisfy their constraints."""
 
-    def over(self, motions: PushedDynamics, start: float) -> MotionDynamics:
+    def over(self, motions: ImpulsiveDynamics, start: float) -> MotionDynamics:
         """Dynamics of the motions with their joints from ``start`` on [time]."""
 
     def load(self, links: Links, force: FloatArray, motions: Pose, time: float) -> LinkLoad:
@@ -100,7 +100,7 @@ class Joints(Protocol):
         """Readings of all joints and then of all ground links, with the n ``bodies`` at this pose and ``twist`` and the
         forces (c,) of links."""
 
-    def following(self, controlled_twist: Callable[[float], FloatArray]) -> Joints:
+    def following(self, prescribed_twist: Callable[[float], FloatArray]) -> Joints:
         """The same joints with other prescribed twists (N, d+k) at a time."""
 
 
@@ -131,7 +131,7 @@ class NoJoints:
     def fitting(self, motions: Pose, twist: Twist, time: float) -> Twist:
         return twist
 
-    def over(self, motions: PushedDynamics, start: float) -> MotionDynamics:
+    def over(self, motions: ImpulsiveDynamics, start: float) -> MotionDynamics:
         return motions
 
     def load(self, links: Links, force: FloatArray, motions: Pose, time: float) -> LinkLoad:
@@ -150,5 +150,5 @@ class NoJoints:
     def readings(self, bodies: Pose, twist: Twist, time: float, force: FloatArray) -> list[LinkReading]:
         return []
 
-    def following(self, controlled_twist: Callable[[float], FloatArray]) -> NoJoints:
+    def following(self, prescribed_twist: Callable[[float], FloatArray]) -> NoJoints:
         return self

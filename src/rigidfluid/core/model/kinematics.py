@@ -15,7 +15,7 @@ class Kinematics(Protocol):
     """Kinematics of n bodies on N motions at one moment."""
 
     @property
-    def given(self) -> FloatArray:
+    def relative_twist(self) -> FloatArray:
         """Twist g that relative motion adds, (n, d+k), or () where there is none [length/time | rad/time]."""
 
     def centres(self, bodies: Pose) -> FloatArray:
@@ -33,11 +33,11 @@ class Kinematics(Protocol):
     def motion_rows(self, rows: FloatArray) -> FloatArray:
         """Rows C G (c, N, d+k) on the motions of rows C (c, n, d+k) on the bodies."""
 
-    def prescribed(self, controlled: BoolArray, twist: Twist) -> BoolArray:
-        """Whether a body has a prescribed part of its twist (n,), given that ``twist`` and the motions ``controlled``
+    def has_prescribed_part(self, prescribed: BoolArray, twist: Twist) -> BoolArray:
+        """Whether a body has a prescribed part of its twist (n,), given that ``twist`` and the motions ``prescribed``
         (N,)."""
 
-    def body_rates(self, rate: FloatArray, motion: Twist, given_rate: FloatArray) -> FloatArray:
+    def body_rates(self, rate: FloatArray, motion: Twist, relative_rate: FloatArray) -> FloatArray:
         """Accelerations of the bodies (n, d+k) by the ``rate`` (N, d+k) of the motions' twists, these twists, and the
         rate of g (n, d+k)."""
 
@@ -45,7 +45,7 @@ class Kinematics(Protocol):
 class EachItsOwn:
     """Kinematics of bodies that each are a motion of their own: G = 1, g = 0; arguments are returned unchanged."""
 
-    given: FloatArray = np.zeros(())
+    relative_twist: FloatArray = np.zeros(())
 
     def centres(self, bodies: Pose) -> FloatArray:
         return bodies.position
@@ -62,10 +62,10 @@ class EachItsOwn:
     def motion_rows(self, rows: FloatArray) -> FloatArray:
         return rows
 
-    def prescribed(self, controlled: BoolArray, twist: Twist) -> BoolArray:
-        return controlled
+    def has_prescribed_part(self, prescribed: BoolArray, twist: Twist) -> BoolArray:
+        return prescribed
 
-    def body_rates(self, rate: FloatArray, motion: Twist, given_rate: FloatArray) -> FloatArray:
+    def body_rates(self, rate: FloatArray, motion: Twist, relative_rate: FloatArray) -> FloatArray:
         return rate
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
-from rigidfluid.core.model.dynamics import BodyDynamics, MotionDynamics, PushedDynamics
+from rigidfluid.core.model.dynamics import BodyDynamics, ImpulsiveDynamics, MotionDynamics
 from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.state import MotionState
 from rigidfluid.core.model.types import Pose, Twist, Wrench
@@ -16,14 +16,14 @@ class Motions(Protocol):
     """The N motions of a system, and how they carry its n bodies.
 
     ``names``: those of the mechanisms, which are the last of the motions. ``carrier`` (n,): the motion of each body.
-    ``controlled`` (N,): whether a motion's twist is prescribed. ``mass`` (N,): sum over all that a motion carries.
+    ``prescribed`` (N,): whether a motion's twist is. ``mass`` (N,): sum over all that a motion carries.
     ``pose``, ``twist``: those of the motions at the start. ``driven_motions`` (N,): whether a motion's bodies move
     relatively to each other; ``driven``: whether any do.
     """
 
     names: tuple[str, ...]
     carrier: IntArray
-    controlled: BoolArray
+    prescribed: BoolArray
     mass: FloatArray
     pose: Pose
     twist: Twist
@@ -68,10 +68,10 @@ class Motions(Protocol):
         load: Wrench,
         arms: FloatArray,
         start: float,
-        controlled_twist: Callable[[float], FloatArray],
-    ) -> PushedDynamics:
+        prescribed_twist: Callable[[float], FloatArray],
+    ) -> ImpulsiveDynamics:
         """Dynamics of the motions from ``now`` on without a fluid, with a constant ``load`` on the bodies, whose
-        farthest points are ``arms`` (n,) from their centres [length]; ``controlled_twist`` gives the twist (N, d+k) of
+        farthest points are ``arms`` (n,) from their centres [length]; ``prescribed_twist`` gives the twist (N, d+k) of
         prescribed motions from a time since the ``start`` [time]."""
 
     def carry(self, motions: MotionDynamics, start: float, load: Wrench | None = None) -> BodyDynamics:

@@ -51,7 +51,7 @@ def refuse_lost_advance(names: Sequence[str], advance: Advance, pose: Pose, moti
         refuse_no_number("fluid", "stress_power", advance.stress_power, key)
 
 
-_POWERS = ("boundary_power", "leak", "grad_div", "source_power")
+_POWERS = ("boundary_power", "spurious_flux", "grad_div", "source_power")
 _ENERGIES = ("kinetic_energy", "dissipation", "dissipation_midway", *_POWERS)
 
 

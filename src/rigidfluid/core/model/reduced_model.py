@@ -11,17 +11,17 @@ from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
-    """Conditions under which the impulse response of some velocities was evaluated: ``tightness`` (c,) of their
-    contacts [1], and the ``velocity`` (c,) itself."""
+class Evaluation:
+    """Conditions under which the impulse response of some velocities was evaluated: ``film_resistance`` (c,) of
+    their contacts [1], and the ``velocity`` (c,) itself."""
 
-    tightness: FloatArray
+    film_resistance: FloatArray
     velocity: FloatArray
 
     @property
     def arrays(self) -> tuple[FloatArray, FloatArray]:
-        """Tightness and velocity."""
-        return self.tightness, self.velocity
+        """Film resistance and velocity."""
+        return self.film_resistance, self.velocity
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,18 +30,18 @@ class ReducedModel:
 
     M is the mass of bodies and fluid, R what viscosity adds in a step, Φ all forces but the contacts' F. Both are
     known by their common ``modes`` X (c, c), XᵀMX = 1, and the ``decay`` rates λ (c,) in XᵀRX = diag λ [1/time].
-    ``velocities`` (c,): their numbers among the components (N, d+k) of all motions' twists. ``asked``: conditions when
-    their responses were evaluated. ``shared``: whether far bodies shared right sides in that.
+    ``velocities`` (c,): their numbers among the components (N, d+k) of all motions' twists. ``evaluation``: conditions
+    when their responses were evaluated. ``shared``: whether far bodies shared right sides in that.
     """
 
     velocities: IntArray
     modes: FloatArray
     decay: FloatArray
-    asked: Asked
+    evaluation: Evaluation
     shared: bool
 
     @property
-    def mobility(self) -> FloatArray:
+    def inverse_mass(self) -> FloatArray:
         """M⁻¹ = X Xᵀ, (c, c) [1/mass]."""
         return self.modes @ self.modes.T
 
@@ -50,7 +50,7 @@ class ReducedModel:
         inverse = np.linalg.inv(self.modes)
         return np.asarray(inverse.T @ (inverse @ velocity))
 
-    def answer(self, d0: float, impulse: FloatArray) -> FloatArray:
+    def response(self, d0: float, impulse: FloatArray) -> FloatArray:
         """d₀ (d₀M + R)⁻¹ J for J (c, …): velocities that impulses give, at the end of a BDF step."""
         share = 1.0 / (1.0 + self.decay / d0)
         return np.asarray((self.modes * share) @ (self.modes.T @ impulse))
@@ -67,8 +67,8 @@ class Coupling:
     non-contact load Φ at the end of the step [force | force·length].
 
     ``load_before`` (c,) is Φ at its start, NaN where it is not known. ``correction`` (c,): of a fluid without inertia,
-    the load that takes its answer to the end of the path; it answers to the force there, and not to the mean of the
-    step.
+    the load that takes its response to the end of the path; it responds to the force there, and not to the mean of
+    the step.
     """
 
     model: ReducedModel
@@ -80,31 +80,31 @@ class Coupling:
 def uncoupled() -> Coupling:
     """The coupling of no body at all."""
     none = np.zeros(0)
-    model = ReducedModel(np.zeros(0, dtype=np.int64), np.zeros((0, 0)), none, Asked(none, none), False)
+    model = ReducedModel(np.zeros(0, dtype=np.int64), np.zeros((0, 0)), none, Evaluation(none, none), False)
     return Coupling(model, none, none, none)
 
 
 def reduced_model(
-    velocities: IntArray, by_mass: FloatArray, by_step: FloatArray, d0: float, asked: Asked, shared: bool
+    velocities: IntArray, inviscid: FloatArray, viscous: FloatArray, d0: float, evaluation: Evaluation, shared: bool
 ) -> ReducedModel:
-    """Reduced model that answers to an impulse with W_i = ``by_mass`` at once, and with W_s = ``by_step`` at the end of
-    a BDF step, (c, c) each, twists by unit impulses [1/mass].
+    """Reduced model of the impulse responses W_i = ``inviscid``, at once, and W_s = ``viscous``, at the end of a BDF
+    step, (c, c) each, twists by unit impulses [1/mass].
 
-    M = W_i⁻¹ and R = d₀ (W_s⁻¹ - W_i⁻¹), so that d₀M + R is the step's own answer, with d₀ the weight of the newest
+    M = W_i⁻¹ and R = d₀ (W_s⁻¹ - W_i⁻¹), so that d₀M + R is the step's own response, with d₀ the weight of the newest
     velocity in its time derivative [1/time]. Both are made symmetric, which W_s is not where the fluid convects; where
-    R would be negative it is zero. If far bodies ``shared`` questions, their errors may leave modes no answer at all,
-    or a negative one.
+    R would be negative it is zero. If far bodies ``shared`` right sides, their errors may leave modes no response at
+    all, or a negative one.
     """
-    mass_modes = _root(0.5 * (by_mass + by_mass.T), shared)  # L Lᵀ = W_i: XᵀMX = 1 for X = L
-    answer = np.linalg.solve(mass_modes, np.linalg.solve(mass_modes, 0.5 * (by_step + by_step.T)).T)
-    share, turn = np.linalg.eigh(0.5 * (answer + answer.T))
-    floor = _LEAST_SHARE * float(np.min(by_step.diagonal() / by_mass.diagonal())) if shared else _LEAST
+    mass_modes = _root(0.5 * (inviscid + inviscid.T), shared)  # L Lᵀ = W_i: XᵀMX = 1 for X = L
+    response = np.linalg.solve(mass_modes, np.linalg.solve(mass_modes, 0.5 * (viscous + viscous.T)).T)
+    share, turn = np.linalg.eigh(0.5 * (response + response.T))
+    floor = _LEAST_SHARE * float(np.min(viscous.diagonal() / inviscid.diagonal())) if shared else _LEAST
     decay = d0 * np.maximum(1.0 / np.maximum(share, floor) - 1.0, 0.0)
-    return ReducedModel(velocities, mass_modes @ turn, decay, asked, shared)
+    return ReducedModel(velocities, mass_modes @ turn, decay, evaluation, shared)
 
 
 def _root(matrix: FloatArray, shared: bool) -> FloatArray:
-    """L with L Lᵀ the matrix, of velocities and angular velocities: each counts in units of its own answer."""
+    """L with L Lᵀ the matrix, of velocities and angular velocities: each counts in units of its own response."""
     unit = np.sqrt(matrix.diagonal())
     value, vector = np.linalg.eigh(matrix / np.outer(unit, unit))
     floor = _LEAST_SHARE if shared else _LEAST * value.max()
@@ -112,10 +112,10 @@ def _root(matrix: FloatArray, shared: bool) -> FloatArray:
 
 
 _LEAST = 1e-12
-"""Least share of the inviscid answer; less is the rounding of none."""
+"""Least share of the inviscid response; less is the rounding of none."""
 
 _LEAST_SHARE = 0.1
-"""Least answer of a mode of many velocities, over the answers of single ones, where questions were shared."""
+"""Least response of a mode of many velocities, over those of single ones, where right sides were shared."""
 
 
 def load_within(

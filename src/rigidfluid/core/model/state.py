@@ -119,7 +119,7 @@ class State:
     cells where there is no fluid. ``coupling``: of bodies near contacts with the fluid, on the present mesh, None where
     none are. The wrenches are those that led to the present twist. ``impact``: the tick at the end of the latest step
     in which an impact shorter than it stirred the fluid, None before the first. ``remesh_failed``: the latest time that
-    this mesh could not be made anew, None if it has not been tried. ``motions``: what carries the bodies, from which
+    this mesh could not be regenerated, None if it has not been tried. ``motions``: what carries the bodies, from which
     ``pose`` and ``twist`` are then evaluated. ``estimate``: of the latest step's error; None before the first step, and
     without a tolerance. ``link``: of joints.
     ``prescription``: what was prescribed since the start in the scene's place, None if nothing was. ``applied``: wrench

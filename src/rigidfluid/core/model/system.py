@@ -30,8 +30,8 @@ class System:
     [length/time].
     ``mass`` (n,) [mass], ``inertia`` (n, k, k) in the body's frame [mass·length²]; ``added_mass`` (n, d, d): what a
     fluid adds at least. ``weight`` (n, d) submerged, (m - ρV)g [force].
-    ``controlled`` (n,): the twist is given, by ``controlled_twist(time)`` (n, d+k), and the pose, by
-    ``controlled_pose(time)``.
+    ``prescribed`` (n,): the twist is given, by ``prescribed_twist(time)`` (n, d+k), and the pose, by
+    ``prescribed_pose(time)``.
     ``fluid``: its equations and boundary conditions, None in a dry scene. ``make_backend()``: the one backend, of
     ``backend_type``.
     ``motions``: those that carry the bodies; twists and poses that are given are the motions'. ``joints``: joints, held
@@ -44,7 +44,7 @@ class System:
     ``substeps``: of contacts in a step, None where they follow from the contacts; ``implicit``: one step, no substeps.
     ``detection_type(system)``: by which the loop asks the ``detector``; ``detector_why``: who chose that, and for what
     reason. ``reach``: the largest gap that is measured [length].
-    ``leverage`` (n,): of each body's surface, see `most_leverage` [1].
+    ``rotational_factor`` (n,): of each body's surface, see `largest_rotational_factor` [1].
     """
 
     dimension: int
@@ -62,9 +62,9 @@ class System:
     motions: Motions
     joints: Joints
     assembly: IntArray
-    controlled: BoolArray
-    controlled_twist: Callable[[float], FloatArray]
-    controlled_pose: Callable[[float], Pose]
+    prescribed: BoolArray
+    prescribed_twist: Callable[[float], FloatArray]
+    prescribed_pose: Callable[[float], Pose]
     fluid: FluidProblem | None
     backend_type: type[FluidBackend]
     make_backend: Callable[[], FluidBackend]
@@ -72,7 +72,7 @@ class System:
     detection_type: Callable[[System], Detection]
     detector_why: str
     reach: float
-    leverage: FloatArray
+    rotational_factor: FloatArray
     interactions: tuple[Interaction, ...]
     law: ForceLaw | None
     loads: Loads

@@ -195,8 +195,8 @@ class Links:
     """Constraints and dampers of N motions at one moment: C u + compliance · force = rate for their twists u, and Cᵀ
     force acts on them.
 
-    ``rows`` (c, N, d+k): C, zero for motions of given twist; ``rate`` (c,): at which a link is driven, less what given
-    motion has of it [length/time | rad/time]; ``compliance`` (c,): 1/c of a damper, 0 where a link is rigid
+    ``rows`` (c, N, d+k): C, zero for motions of prescribed twist; ``rate`` (c,): at which a link is driven, less what
+    prescribed motion has of it [length/time | rad/time]; ``compliance`` (c,): 1/c of a damper, 0 where a link is rigid
     [length/(force·time) | rad/(force·length·time)]. The links' power on the motions is force · rate less compliance ·
     force².
     """
@@ -219,12 +219,12 @@ class Step:
     ``pose``: of the bodies, there. ``points`` (N + K, d): the mesh's geometry at the new time; None for responses
     on the present one.
     Newton–Euler of the bodies: ``mass_matrix`` (n, d+k, d+k) times the new twist = ``load`` (n, d+k) + the fluid's
-    wrench, where ``controlled`` (n,) is False; elsewhere the twist is ``controlled_twist`` (n, d+k).
+    wrench, where ``prescribed`` (n,) is False; elsewhere the twist is ``prescribed_twist`` (n, d+k).
     All these are of the N motions that carry the bodies, by ``kinematics``, and the fluid's wrench on them is Gᵀ of
     that on the bodies.
     In ``load`` is d₀ times ``impulse`` (n, d+k), which the contacts of this step gave at once
     [force·time | force·length·time]; ``load_scale`` is the size of the parts of the load, which may cancel each other.
-    ``turning`` (n, d+k): impulses whose answer by the masses of bodies and fluid is added to the convecting velocity,
+    ``turning`` (n, d+k): impulses whose inviscid response is added to the convecting velocity,
     zero but for steps in which contacts turn bodies around [force·time | force·length·time].
     ``provisional``: the step will be solved again, along another path of the bodies, and five digits do.
     ``links``: what else holds the motions at the new time.
@@ -237,8 +237,8 @@ class Step:
     points: FloatArray | None
     mass_matrix: FloatArray
     load: FloatArray
-    controlled: BoolArray
-    controlled_twist: FloatArray
+    prescribed: BoolArray
+    prescribed_twist: FloatArray
     impulse: FloatArray
     load_scale: float
     turning: FloatArray
@@ -268,12 +268,12 @@ class Response:
     """Response of the twists of all bodies, or of the motions that carry them, to impulses on them, (c, n, d+k) each
     for c impulses.
 
-    ``by_mass``: at once, with the masses of bodies and fluid and its incompressibility alone. ``by_step``: at the end
+    ``inviscid``: at once, with the masses of bodies and fluid and its incompressibility alone. ``viscous``: at the end
     of a step, by its own matrix, viscosity in it.
     """
 
-    by_mass: FloatArray
-    by_step: FloatArray
+    inviscid: FloatArray
+    viscous: FloatArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -284,7 +284,7 @@ class Advance:
     ``hydrodynamic_wrench`` is the fluid's force and torque on each body alone, without buoyancy, weight or contact.
     ``dissipation`` by viscosity at the end, and ``dissipation_midway`` by the mean of the velocities at start and end
     [energy/time]. ``boundary_power`` is the mechanical power that enters through the domain's boundary [energy/time].
-    ``link_force`` (c,): of the step's links [force | force·length]. ``leak``: kinetic energy that
+    ``link_force`` (c,): of the step's links [force | force·length]. ``spurious_flux``: kinetic energy that
     convection takes through faces that let none pass, an error of the mesh [energy/time]. ``grad_div``: what
     stabilisation takes, ∫ γ (∇·u)², numerical dissipation that is zero where cells resolve the flow [energy/time].
     ``source_power``: that of the problem's source on the fluid, ∫ f·u [energy/time].
@@ -300,7 +300,7 @@ class Advance:
     dissipation_midway: float
     boundary_power: float
     link_force: FloatArray = field(default_factory=lambda: np.zeros(0))
-    leak: float = 0.0
+    spurious_flux: float = 0.0
     grad_div: float = 0.0
     source_power: float = 0.0
     stress_power: float | None = None

@@ -62,7 +62,7 @@ class EnergyAccount:
     """``put_in`` [energy], and shares of it, zero where nothing was put in.
 
     Put in: what was stored at the start, the most that gravity had worked by any time, and the most that faces,
-    driven bodies and the force on the fluid had. The error at a time is the residual and what re-meshing took.
+    prescribed bodies and the force on the fluid had. The error at a time is the residual and what re-meshing took.
     ``created``: the lowest that it was after the first step, less that step's own, its sign changed. ``lost``: the
     highest, without what friction between the fluid's solutions explains. ``unaccounted``: the residual at the end.
     ``path_friction``: that friction, until the end. ``grad_div``: what stabilisation took until the end, no part of

@@ -116,5 +116,5 @@ def _reading(path: Path) -> Iterator[None]:
     try:
         yield
     except (OSError, ValueError) as error:
-        remedy = "Restore the file, or run the scene anew."
+        remedy = "Restore the file, or run the scene again."
         raise OutputError(str(path), error, "a table as a run has written it", remedy) from error

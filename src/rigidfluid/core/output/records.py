@@ -121,7 +121,7 @@ def _joint_rows(system: System, state: State, stamp: Row, time: float) -> Iterat
 
 def _step_row(system: System, state: State, stamp: Row, cost: StepCost) -> Row:
     """The error is infinite where it is not known."""
-    unknowns = system.backend.unknowns(state.mesh, system.motions.controlled)
+    unknowns = system.backend.unknowns(state.mesh, system.motions.prescribed)
     error = math.inf if state.estimate is None else state.estimate.error
     return (*stamp, cost.size, error, unknowns, cost.remeshes, count_cells(state.mesh), cost.quality)
 

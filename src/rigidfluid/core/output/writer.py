@@ -37,7 +37,7 @@ CHECKPOINT, SUMMARY, SERIES, FIELDS = "state.h5", "summary.json", "fields.pvd", 
 class Writer:
     """Writes the files of one run to the folder ``out``; every method is called by all ranks together.
 
-    All files are started anew, unless an earlier run is ``resumed`` from its checkpoint. Every method raises
+    All files are started again, unless an earlier run is ``resumed`` from its checkpoint. Every method raises
     OutputError, on all ranks, if the disk refuses on one; so does the start if another run is writing there, or files
     of these names are not a run's.
     """

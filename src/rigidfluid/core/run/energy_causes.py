@@ -1,4 +1,4 @@
-"""Cause of the energy that a step left unaccounted for: it began anew, its mesh was new, or contacts pushed otherwise
+"""Cause of the energy that a step left unaccounted for: it restarted, its mesh was new, or contacts pushed otherwise
 than before."""
 
 from __future__ import annotations

@@ -61,7 +61,7 @@ def estimate_error(system: System, time: float, state: State, candidate: State) 
 def _expected(system: System) -> ErrorEstimate:
     """Estimate before the first step: the speeds of impact that the scene leads to expect, and the bodies' energy with
     them."""
-    free = ~system.controlled
+    free = ~system.prescribed
     speed, added = system.loads.speed[free], np.trace(system.added_mass[free], axis1=1, axis2=2) / system.dimension
     energy = 0.5 * float((system.mass[free] + added) @ speed**2)
     return ErrorEstimate(0, 0, math.inf, math.inf, float(speed.max(initial=0.0)), energy)

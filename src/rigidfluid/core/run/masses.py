@@ -15,7 +15,7 @@ class Masses:
 
     def __init__(self, system: System, time: float, state: State) -> None:
         motions = system.motions
-        self._free, self._mass = ~motions.controlled, motions.mass[~motions.controlled]
+        self._free, self._mass = ~motions.prescribed, motions.mass[~motions.prescribed]
         self._matrix = generalised_mass(motions.mass, motions.inertia(time), state.motions.pose)[self._free]
 
     def energies(self, twist: FloatArray) -> FloatArray:

@@ -1,5 +1,5 @@
 """Turns the keys of a scene's [mesh] table into wanted cell sizes, the way in which bodies come into the mesh, and the
-conditions on which it is made anew."""
+conditions on which it is regenerated."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def inserter_of(table: MeshTable) -> Inserter:
 
 
 def renewal_of(table: MeshTable, clock: Clock) -> Renewal:
-    """Conditions on which a mesh is made anew; none is tried in the time of a whole step after a failure."""
+    """Conditions on which a mesh is regenerated; none is tried in the time of a whole step after a failure."""
     oldest = clock.tick_from(table.remesh_every) if table.remesh_every else np.inf
     return Renewal(table.quality, clock.ticks(0), oldest)
 

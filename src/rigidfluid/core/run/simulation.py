@@ -238,7 +238,7 @@ class Simulation:
         SceneError
             If there is no such body, it is free, or a value is not allowed.
         """
-        row, now = self._row(name, True), self.system.controlled_twist(self.time)
+        row, now = self._row(name, True), self.system.prescribed_twist(self.time)
         twist = twist_row(self.model.dimension, velocity, angular_velocity)
         within = over_time(over, now[row], twist)
         if self.system.has_fluid:
@@ -409,13 +409,13 @@ class Simulation:
         """Let prescribed bodies move so."""
         joints = self.system.joints.following(motion)
         self.stepper.system = replace(
-            self.system, controlled_twist=motion, controlled_pose=motion.pose_at, joints=joints
+            self.system, prescribed_twist=motion, prescribed_pose=motion.pose_at, joints=joints
         )
 
     def _row(self, name: str, prescribed: bool) -> int:
         """The number of a body whose motion is prescribed, or of a free one."""
         names = self.system.surfaces[: len(self.system.bodies)]
-        right = [body for body, given in zip(names, self.system.controlled, strict=True) if given == prescribed]
+        right = [body for body, given in zip(names, self.system.prescribed, strict=True) if given == prescribed]
         if name in right:
             return names.index(name)
         other = "free" if prescribed else "fixed or prescribed"

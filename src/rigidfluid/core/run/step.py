@@ -13,7 +13,7 @@ from rigidfluid.core.coupling.scheme import Scheme
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.actuators import BodiesAfter, actuator_work
 from rigidfluid.core.mechanics.fluid_step import StepEnd, step_to
-from rigidfluid.core.mechanics.kinematics import given_twist
+from rigidfluid.core.mechanics.kinematics import prescribed_part
 from rigidfluid.core.mechanics.motions import applied_wrench, kinematics_now
 from rigidfluid.core.mechanics.rigid import kinetic_energy, rotation_between
 from rigidfluid.core.mechanics.wrenches import flat, power, wrench_of, wrench_sum
@@ -67,7 +67,7 @@ def attempt(tools: Tools, state: State, level: int, path: BodyStep, provisional:
         step = tools.scheme.prepare(step_to(system, state, end, place.mesh.geometry), state, path)
         step = replace(step, provisional=True) if provisional else step
         advance = system.backend.advance(state.fluid, state.mesh, step)
-        refuse_lost_advance(system.surfaces, advance, state.pose, len(system.motions.controlled))
+        refuse_lost_advance(system.surfaces, advance, state.pose, len(system.motions.prescribed))
     twist = step.kinematics.component_twist(advance.twist)
     after = BodiesAfter(path.pose, twist, end.size)
     candidate = replace(
@@ -157,7 +157,7 @@ def _mean(impulse: Wrench, size: float) -> Wrench:
 
 def bodies_energy(system: System, pose: Pose, twist: Twist) -> float:
     """Kinetic energy of the free bodies; what is driven has no energy of its own in the balance."""
-    free = ~system.controlled
+    free = ~system.prescribed
     return kinetic_energy(system.mass * free, system.inertia * free[:, None, None], pose, twist)
 
 
@@ -178,8 +178,8 @@ def contact_energy(system: System, contacts: Contacts) -> float:
 def _power(system: System, advance: Advance, step: Step, motions: Pose) -> Power:
     """Power of a step [energy/time]: that which enters by the boundary, drives bodies and joints in the fluid, or is
     dissipated by fluid and dampers."""
-    given, where = given_twist(step)
-    control = -float(power(advance.hydrodynamic_wrench, given)[where].sum())
+    twist, where = prescribed_part(step)
+    control = -float(power(advance.hydrodynamic_wrench, twist)[where].sum())
     control += float(advance.link_force @ step.links.rate)
     control += system.solved_joints.spring_power(motions, step.time)
     return Power(
@@ -188,7 +188,7 @@ def _power(system: System, advance: Advance, step: Step, motions: Pose) -> Power
         dissipation=advance.dissipation,
         dissipation_midway=advance.dissipation_midway,
         damping=float(step.links.compliance @ advance.link_force**2),
-        leak=advance.leak,
+        spurious_flux=advance.spurious_flux,
         grad_div=advance.grad_div,
         source=advance.source_power,
         stress_power=advance.stress_power,
@@ -210,7 +210,7 @@ def _dissipation_midway(state: State, before: Power | None, advance: Advance, tw
 
 
 def _ledger_at_start(system: System, state: State, advance: Advance, step: Step, time: float) -> Ledger:
-    """Ledger before a step. If the step begins anew at a corner of a stroke, it has the power of the step's own forces
+    """Ledger before a step. If the step restarts at a corner of a stroke, it has the power of the step's own forces
     at its start: half of an impulse acts on the rates before the corner, half on those after it, and nothing of it on
     later steps. Without inertia there is no impulse, and the rates after the corner are unknown until the step is
     made."""
@@ -219,9 +219,9 @@ def _ledger_at_start(system: System, state: State, advance: Advance, step: Step,
         return ledger
     if system.quasi_steady:
         return replace(ledger, power=None)
-    motions, held = state.motions.pose, system.controlled_twist(time)
+    motions, prescribed = state.motions.pose, system.prescribed_twist(time)
     links = system.solved_joints.links(motions, time)
-    before = replace(step, kinematics=kinematics_now(system, state), controlled_twist=held, links=links)
+    before = replace(step, kinematics=kinematics_now(system, state), prescribed_twist=prescribed, links=links)
     return replace(ledger, power=replace(ledger.power, control=_power(system, advance, before, motions).control))
 
 
@@ -229,9 +229,9 @@ def _work(system: System, state: State, path: BodyStep, by_actuators: float) -> 
     """Work of a step [energy]: of the free bodies' weight, of what drives bodies and walls against contacts and
     inertia, of wrenches from outside, and of dampers."""
     fallen = np.sum(system.weight * (path.pose.position - state.pose.position), axis=1)
-    free = float(fallen[~system.controlled].sum())
-    driven = path.actuator_work + by_actuators + _applied_work(state, path.pose)
-    return Work(free, driven, path.dissipated, path.friction, path.drag_loss)
+    free = float(fallen[~system.prescribed].sum())
+    supplied = path.actuator_work + by_actuators + _applied_work(state, path.pose)
+    return Work(free, supplied, path.dissipated, path.friction, path.drag_loss)
 
 
 def _applied_work(state: State, pose: Pose) -> float:

@@ -49,7 +49,7 @@ class Counts:
 class Stepper:
     """Takes steps, and counts what happens to them.
 
-    The ``system`` may be replaced between steps by one with another motion of its controlled bodies. ``tolerance``: of
+    The ``system`` may be replaced between steps by one with another motion of its prescribed bodies. ``tolerance``: of
     a step's local error [1]; None for steps as long as the clock allows. ``propose`` gives the level of the next step
     after a state, before gaps and rejections shorten it: the step controller. Another may be put in the place of
     `longest`, or of `StepController.propose` with a tolerance.
@@ -168,12 +168,12 @@ class Stepper:
         return self._with_prescribed(path, state, level)
 
     def _with_prescribed(self, path: BodyStep, state: State, level: int) -> BodyStep:
-        """The path with poses at its end evaluated, not integrated: of motions that are given, and of all bodies; and
+        """The path with poses at its end evaluated, not integrated: of prescribed motions, and of all bodies; and
         with joints that fit."""
         end = self._end(state, level)
-        given, is_given = self.system.controlled_pose(end), self.system.motions.controlled[:, None]
-        position = np.where(is_given, given.position, path.motions.pose.position)
-        orientation = np.where(is_given, given.orientation, path.motions.pose.orientation)
+        pose, prescribed = self.system.prescribed_pose(end), self.system.motions.prescribed[:, None]
+        position = np.where(prescribed, pose.position, path.motions.pose.position)
+        orientation = np.where(prescribed, pose.orientation, path.motions.pose.orientation)
         motions = Pose(position, orientation)
         motions = self.system.joints.closed(motions, end)
         bodies = self.system.motions.poses(motions, end)

@@ -64,7 +64,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "seed": simulation.model.seed,
         "versions": versions(),
         "time": simulation.clock.time(state.tick),
-        "unknowns": system.backend.unknowns(state.mesh, system.motions.controlled),
+        "unknowns": system.backend.unknowns(state.mesh, system.motions.prescribed),
         "cells": count_cells(state.mesh),
         "worst_quality": _finite(np.min(simulation.history.steps["quality"], initial=np.inf)),
         "ranks": system.backend.ranks.size,
@@ -102,7 +102,7 @@ def _caller_values(state: State, system: System) -> dict[str, Any]:
     name; empty without any."""
     by_hand = {}
     if state.prescription is not None:
-        by_hand["prescribed"] = _rows(system, state.prescription.twist, system.controlled)
+        by_hand["prescribed"] = _rows(system, state.prescription.twist, system.prescribed)
     if state.applied is not None:
         by_hand["applied"] = _rows(system, flat(state.applied), np.any(flat(state.applied), axis=1))
     return {"by_hand": by_hand} if by_hand else {}

@@ -396,7 +396,7 @@ class InteractionTable(_OpenTable):
 
 
 class WakeTable(_Table):
-    """Finer cells behind free and driven bodies, from x - time·velocity to x and as wide as the body.
+    """Finer cells behind free and prescribed bodies, from x - time·velocity to x and as wide as the body.
 
     They are there from the second mesh on; a fluid that flows past a fixed body wants `[[mesh.refine]]`, or a
     `[[mesh.field]]` that follows its flow.
@@ -437,7 +437,7 @@ class MeshTable(_Table):
     cells_per_gap: int = Field(
         default=2, ge=1, le=100, description="Cells across the gap between surfaces near contact [1]"
     )
-    quality: float = Field(default=0.25, gt=0, lt=1, description="Cell quality below which the mesh is made anew [1]")
+    quality: float = Field(default=0.25, gt=0, lt=1, description="Cell quality below which the mesh is regenerated [1]")
     refinements: int = Field(default=5, ge=0, le=20, description="How many times a facet may be halved in a gap [1]")
     order: Literal[1, 2] = Field(
         default=2, description="1: cells with straight edges; 2: curved along bodies and curved walls [1]"
@@ -452,7 +452,7 @@ class MeshTable(_Table):
         default=600.0, description="Time after which the mesher that fills between facets is stopped [s]"
     )
     remesh_every: Positive | None = Field(
-        default=None, description="Age at which a mesh is made anew in any case; never if not given [time]"
+        default=None, description="Age at which a mesh is regenerated in any case; never if not given [time]"
     )
     wake: WakeTable | None = Field(default=None, description="Finer cells behind moving bodies")
     refine: tuple[RefineTable, ...] = Field(default=(), description="Boxes with finer cells")

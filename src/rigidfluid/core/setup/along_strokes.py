@@ -52,7 +52,7 @@ def fastest_given(motions: Motions, mechanisms: Iterable[Mechanism], end: float)
     times = [float(time) for mechanism in driven for time in times_along(mechanism, end)]
     if not times:
         return np.zeros((len(motions.carrier), 2))
-    given = np.array([motions.kinematics(motions.pose, time).given for time in times])
+    given = np.array([motions.kinematics(motions.pose, time).relative_twist for time in times])
     d = motions.pose.position.shape[1]
     return np.stack([np.linalg.norm(part, axis=2).max(axis=0) for part in (given[..., :d], given[..., d:])], axis=1)
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from rigidfluid.core.contact.detection import detection_by
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
-from rigidfluid.core.mechanics.carried_leverage import leverages
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
+from rigidfluid.core.mechanics.rotational_factors import rotational_factors
 from rigidfluid.core.mechanics.single_bodies import SingleBodies
 from rigidfluid.core.mechanics.wall_velocity import SlidingWalls
 from rigidfluid.core.model.interactions import acting_together
@@ -68,9 +68,9 @@ def assemble(model: Model) -> System:
         motions=motions,
         joints=joints,
         assembly=_assemblies(model),
-        controlled=model.controlled,
-        controlled_twist=given,
-        controlled_pose=given.pose_at,
+        prescribed=model.prescribed,
+        prescribed_twist=given,
+        prescribed_pose=given.pose_at,
         fluid=problem,
         backend_type=backend.part,
         make_backend=cache(partial(backend.part, backend.options, problem)),
@@ -78,7 +78,7 @@ def assemble(model: Model) -> System:
         detection_type=detection_by(chosen.part),
         detector_why=why,
         reach=_reach(detector, law),
-        leverage=leverages(model.shapes, motions, model.time.end),
+        rotational_factor=rotational_factors(model.shapes, motions, model.time.end),
         interactions=interactions,
         law=law,
         loads=loads,
@@ -94,9 +94,9 @@ def _motions(model: Model, masses: Masses) -> tuple[Motions, PrescribedMotion]:
     wholes: tuple[Start, ...] = (*model.bodies, *model.mechanisms)
     start = initial_pose(wholes, model.dimension)
     given = prescribed_motion(model.bodies, start)
-    single = model.controlled[: len(model.bodies)]
+    single = model.prescribed[: len(model.bodies)]
     started = _initial_twist(initial_twist(wholes, model.dimension), single, given(0.0))
-    own = masses.mass, masses.inertia, model.controlled, start, started
+    own = masses.mass, masses.inertia, model.prescribed, start, started
     return (CarriedBodies(model.mechanisms_by_name, *own) if model.mechanisms else SingleBodies(*own)), given
 
 
@@ -107,13 +107,13 @@ def _assemblies(model: Model) -> IntArray:
     return np.array([first.setdefault(whole, number) for number, whole in enumerate(wholes)], dtype=np.int64)
 
 
-def _initial_twist(twist: Twist, controlled: BoolArray, given: FloatArray) -> Twist:
-    """The motions' twist at the start, with that of the first ones ``given`` (N, d+k) where they are controlled."""
-    d, held = twist.velocity.shape[1], np.zeros((len(given), 1), dtype=bool)
-    held[: len(controlled), 0] = controlled
+def _initial_twist(twist: Twist, prescribed: BoolArray, given: FloatArray) -> Twist:
+    """The motions' twist at the start, with that of the first ones ``given`` (N, d+k) where they are prescribed."""
+    d, is_prescribed = twist.velocity.shape[1], np.zeros((len(given), 1), dtype=bool)
+    is_prescribed[: len(prescribed), 0] = prescribed
     return Twist(
-        np.where(held, given[:, :d], twist.velocity),
-        np.where(held, given[:, d:], twist.angular_velocity),
+        np.where(is_prescribed, given[:, :d], twist.velocity),
+        np.where(is_prescribed, given[:, d:], twist.angular_velocity),
     )
 
 

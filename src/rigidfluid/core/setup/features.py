@@ -37,7 +37,7 @@ def features(system: System, mesh: MeshTable | None) -> Iterator[Feature]:
     yield from _mesh(system, mesh)
     yield from _contact(system)
     yield _joints(system)
-    yield _count("controlled motion", system.controlled, "fixed or prescribed")
+    yield _count("prescribed motion", system.prescribed, "fixed or prescribed")
 
 
 def _fluid(problem: FluidProblem) -> Iterator[Feature]:

@@ -44,7 +44,7 @@ class Fluid:
     material : Material
         Its viscosity μ: `Newtonian`, or another that its backend solves for.
     mesh : MeshTable
-        How fine its mesh is, and when it is made anew.
+        How fine its mesh is, and when it is regenerated.
     inertia : bool
         Whether the left side is there; without it the flow is a creeping one, by the Stokes equations.
     source : callable, optional

@@ -43,7 +43,7 @@ def impact_speeds(model: Model, impetus: Impetus) -> FloatArray:
     v = √(v₀² + 2 (W/m) h), h the free height along the weight W to the end of the box around the domain, less the
     shortest range of a law, and m the mass. In a fluid at most the larger of v₀ and the terminal speed, and on top of
     that the fastest inflow. For v₀ the surface of a body that is no ball turns with it; v₀ of a component is at least
-    the greatest speed that strokes give it. A driven body has the greatest speed of its prescription. An
+    the greatest speed that strokes give it. A prescribed body has the greatest speed of its prescription. An
     ``impact_speed`` that is given takes the place of all that for free bodies, but for v₀, which it cannot lower.
     """
     start, falling = _own_speeds(model, impetus)
@@ -51,7 +51,7 @@ def impact_speeds(model: Model, impetus: Impetus) -> FloatArray:
         falling = falling + fastest_flow(model)
     if model.stepping.impact_speed is not None:
         falling = np.maximum(start, model.stepping.impact_speed)
-    return np.where(model.controlled, start, falling)
+    return np.where(model.prescribed, start, falling)
 
 
 def travel_speeds(model: Model, impetus: Impetus) -> FloatArray:
@@ -61,7 +61,7 @@ def travel_speeds(model: Model, impetus: Impetus) -> FloatArray:
     is said of impacts.
     """
     start, falling = _own_speeds(model, impetus)
-    own = np.where(model.controlled, start, falling)
+    own = np.where(model.prescribed, start, falling)
     return np.maximum(own, fastest_flow(model))
 
 
@@ -70,15 +70,15 @@ def _own_speeds(model: Model, impetus: Impetus) -> tuple[FloatArray, FloatArray]
     lever = _measure_bodies(_lever, model.shapes)
     start = np.array([_own_speed(body, arm) for body, arm in zip(model.all_bodies, lever, strict=True)])
     start = np.maximum(start, impetus.given[:, 0] + lever * impetus.given[:, 1])
-    pull = np.linalg.norm(impetus.weight, axis=1)
-    falling = np.sqrt(start**2 + 2.0 * pull / impetus.mass * _free_heights(model, impetus.weight))
+    weight = np.linalg.norm(impetus.weight, axis=1)
+    falling = np.sqrt(start**2 + 2.0 * weight / impetus.mass * _free_heights(model, impetus.weight))
     if model.wet:
-        falling = np.minimum(falling, np.maximum(start, terminal_speeds(model, pull)))
+        falling = np.minimum(falling, np.maximum(start, terminal_speeds(model, weight)))
     return start, falling
 
 
-def terminal_speeds(model: Model, pull: FloatArray) -> FloatArray:
-    """Terminal speed (n,) [length/time] of each submerged weight ``pull`` (n,) [force], far from walls, from
+def terminal_speeds(model: Model, weight: FloatArray) -> FloatArray:
+    """Terminal speed (n,) [length/time] of each submerged weight ``weight`` (n,) [force], far from walls, from
     correlations for the drag of a ball of equal volume.
 
     3D: C = (24/Re)(1 + 0.15 Re^0.687) up to Re = 1000, then 0.44; 2D: C = 1 + 10 Re^(-2/3), with Re = 2 r ρ v/μ.
@@ -94,9 +94,9 @@ def terminal_speeds(model: Model, pull: FloatArray) -> FloatArray:
     density, viscosity = fluid.density, fluid.material.dynamic_viscosity
     radius = _measure_bodies(equal_volume_radius, model.shapes)
     if not fluid.inertia:
-        return np.asarray(pull / creeping_resistances(model)[:, 0])
-    per_pull, drag = (8.0 / np.pi, _ball_drag) if model.dimension == 3 else (4.0 * radius, _cylinder_drag)
-    reynolds = _reynolds(pull * density / viscosity**2 * per_pull, drag)
+        return np.asarray(weight / creeping_resistances(model)[:, 0])
+    per_weight, drag = (8.0 / np.pi, _ball_drag) if model.dimension == 3 else (4.0 * radius, _cylinder_drag)
+    reynolds = _reynolds(weight * density / viscosity**2 * per_weight, drag)
     return np.asarray(reynolds * viscosity / (2.0 * radius * density))
 
 
@@ -154,7 +154,7 @@ def _free_heights(model: Model, weight: FloatArray) -> FloatArray:
 
 
 def _own_speed(body: RigidBody, lever: float) -> float:
-    """v₀ of a free body, or the greatest speed that its prescription gives to a driven one."""
+    """v₀ of a free body, or the greatest speed that its prescription gives to a prescribed one."""
     motion = body.prescribed or body
     speed = _length(motion.velocity) + lever * _length(motion.angular_velocity)
     if body.prescribed is None:

@@ -31,12 +31,12 @@ def build_joints(
     model: Model,
     pose: Pose,
     motions: Motions,
-    controlled_twist: Callable[[float], FloatArray],
+    prescribed_twist: Callable[[float], FloatArray],
     resistance: FloatArray | None,
 ) -> Joints:
     """Joints and ground links between the motions of a model at the start.
 
-    ``pose`` is the bodies', ``controlled_twist`` the prescribed twists (N, d+k) of the N motions by time;
+    ``pose`` is the bodies', ``prescribed_twist`` the prescribed twists (N, d+k) of the N motions by time;
     ``resistance`` (n, d+k) is a lower bound of that of a fluid
     without inertia [force·time/length | force·length·time]. Raises SceneError if joints hold what is held already,
     nothing can move in one, or a spring is too stiff for the step.
@@ -48,7 +48,7 @@ def build_joints(
     for joint in joints:
         if joint.kind.drive is not None:
             refuse_quick_drive(joint.kind.drive, joint.name, model.time)
-    linkage = JointLinkage(pose, joints, ground, motions, controlled_twist, resistance)
+    linkage = JointLinkage(pose, joints, ground, motions, prescribed_twist, resistance)
     _check_step(model.time.step, linkage)
     return linkage
 

@@ -44,13 +44,13 @@ def _sum_linked(motions: Motions, joints: Joints, rows: FloatArray) -> FloatArra
 
 def _impact_loads(model: Model, impetus: Impetus) -> Loads:
     """A body of given twist is as heavy as a wall, and nothing that contacts must hold."""
-    controlled, speed = model.controlled, impact_speeds(model, impetus)
+    prescribed, speed = model.prescribed, impact_speeds(model, impetus)
     smallest = min((law.aim for law in model.laws), default=0.0)
-    pull = np.where(controlled, 0.0, np.linalg.norm(impetus.weight, axis=1))
-    own = np.column_stack([pull, np.where(controlled, 0.0, 0.5 * impetus.mass * speed**2)])
+    weight = np.where(prescribed, 0.0, np.linalg.norm(impetus.weight, axis=1))
+    own = np.column_stack([weight, np.where(prescribed, 0.0, 0.5 * impetus.mass * speed**2)])
     position = np.array([body.position for body in model.all_bodies])
     radius = np.array([shape.bounding_radius for shape in model.shapes])
     together = stack_loads(own, impetus.weight, position, radius, model.domain.size)
-    stacked_weight, stacked_energy = np.where(controlled, np.inf, together.T)
-    mass = np.where(controlled, np.inf, impetus.mass)
-    return Loads(mass, pull, speed, stacked_weight, stacked_energy, smallest, model.fluid.film(model.shapes))
+    stacked_weight, stacked_energy = np.where(prescribed, np.inf, together.T)
+    mass = np.where(prescribed, np.inf, impetus.mass)
+    return Loads(mass, weight, speed, stacked_weight, stacked_energy, smallest, model.fluid.film(model.shapes))

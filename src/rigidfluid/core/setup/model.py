@@ -156,9 +156,9 @@ class Model:
         return told_apart(self.laws)
 
     @property
-    def controlled(self) -> BoolArray:
-        """Whether the motion of each body is given (n,)."""
-        return np.array([body.controlled for body in self.all_bodies], dtype=bool)
+    def prescribed(self) -> BoolArray:
+        """Whether the motion of each body is prescribed (n,)."""
+        return np.array([body.is_prescribed for body in self.all_bodies], dtype=bool)
 
     @property
     def mechanisms_by_name(self) -> dict[str, Mechanism]:

@@ -85,8 +85,8 @@ class RigidBody(Start, _Shaped):
     spring: SpringTable | None = None
 
     @property
-    def controlled(self) -> bool:
-        """Whether its motion is given: fixed, or prescribed."""
+    def is_prescribed(self) -> bool:
+        """Whether its motion is prescribed; it is zero if fixed."""
         return self.fixed or self.prescribed is not None
 
     @property

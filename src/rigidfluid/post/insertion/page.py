@@ -35,7 +35,7 @@ def write_page(figures: Figures, mesh: Mesh, system: System, out: Path) -> list[
         picture(shown, caption),
         "<h2>Surfaces</h2>",
         grid(HEADER, map(surface_row, figures.surfaces)),
-        "<p>Facets of flat walls may be made anew in their plane. A given facet that is not kept has been halved.</p>",
+        "<p>Facets of flat walls may be re-meshed in their plane. A given facet that is not kept has been halved.</p>",
         "<h2>Cells</h2>",
         picture(cells, "How many cells have which quality, 1 that of a regular simplex."),
     ]

@@ -15,7 +15,7 @@ _MOST_BODIES = 8
 _ENERGIES = {
     "gravity": "supplied by gravity",
     "boundary": "supplied through the faces",
-    "control": "supplied by what drives controlled bodies",
+    "control": "supplied by what drives prescribed bodies",
     "body_force": "supplied by the force on the fluid",
     "dissipation": "dissipated by viscosity",
     "grad_div_loss": "taken by grad-div stabilisation, in cells too coarse for the flow",

@@ -47,7 +47,7 @@ def read_rows(path: Path) -> dict[str, Row]:
             return {line["identity"]: _row(line) for line in csv.DictReader(file)}
     except (OSError, KeyError, TypeError, ValueError) as error:
         found = f"{type(error).__name__}: {error}"
-        raise OutputError(str(path), found, "the table of an earlier study", "Use --fresh to start anew.") from None
+        raise OutputError(str(path), found, "the table of an earlier study", "Use --fresh to start again.") from None
 
 
 def _row(line: Mapping[str, str]) -> Row:

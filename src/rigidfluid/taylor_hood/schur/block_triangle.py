@@ -29,7 +29,7 @@ class BlockTriangle:
         self._moving = constraint.twist_start + parts.masses.shape[0] * parts.masses.shape[1]
         self._pressures = CahouetChabard(parts)
         self._gradient = _gradient(parts, velocities, self._moving)
-        mean = mean_of_components(parts.stiffness, numbering.nodes, d)
+        mean = mean_of_components(parts.system_matrix, numbering.nodes, d)
         self._spaces = scalar_spaces(constraint, mean)
         self._levels = [TwoLevels(space, mean, _masses(parts, space)) for space in self._spaces]
         self._turning, self._by_turning, self._turn = self._turns(parts)
@@ -61,9 +61,9 @@ class BlockTriangle:
         constraint, d = parts.constraint, parts.constraint.surfaces.numbering.dimension
         bodies, width, _ = parts.masses.shape
         turning = constraint.twist_start + np.arange(bodies)[:, None] * width + np.arange(d, width)
-        operator = constraint.operator[:, turning.ravel()]
-        on_bodies = np.flatnonzero(np.diff(operator.indptr))
-        rows = (operator[on_bodies].T @ parts.stiffness[on_bodies]).T  # K is symmetric but for convection
+        constraint_matrix = constraint.matrix[:, turning.ravel()]
+        on_bodies = np.flatnonzero(np.diff(constraint_matrix.indptr))
+        rows = (constraint_matrix[on_bodies].T @ parts.system_matrix[on_bodies]).T  # K is symmetric but for convection
         columns = sparse.csr_array(constraint.transposed[: self._moving] @ sparse.csr_array(rows))
         k = width - d
         blocks = np.zeros((bodies, k, k))
@@ -92,6 +92,6 @@ def _masses(parts: Parts, space: ScalarSpace) -> FloatArray:
 def _gradient(parts: Parts, velocities: int, moving: int) -> sparse.csr_array:
     """Bᵀ, what pressures do to velocities and twists."""
     constraint = parts.constraint
-    pressures = constraint.operator[velocities:, moving:]
-    to_velocities = parts.stiffness[:velocities, velocities:] @ pressures
+    pressures = constraint.matrix[velocities:, moving:]
+    to_velocities = parts.system_matrix[:velocities, velocities:] @ pressures
     return sparse.csr_array(constraint.transposed[:moving, :velocities] @ sparse.csr_array(to_velocities))

@@ -47,7 +47,7 @@ class CahouetChabard:
             self._terms.append(factorise(sparse.csr_array(grounded / coefficients.inertia), None, orderings))
 
     def solve(self, right_side: FloatArray) -> FloatArray:
-        """S⁻¹ of the pressures' residual (pressures,), without the one that is pinned."""
+        """S⁻¹ of the pressures' residual (pressures,), without that at the pin."""
         if self._pin is None:
             return self._solve(right_side)
         pin = self._which[self._pin]
@@ -62,7 +62,7 @@ class CahouetChabard:
 
 
 def _pressures(constraint: Constraint) -> tuple[IntArray, int]:
-    """The number of the pressure at each vertex, the pinned one's included, and how many there are."""
+    """The number of the pressure at each vertex, that at the pin included, and how many there are."""
     surfaces = constraint.surfaces
     which, number = np.unique(surfaces.originals[: surfaces.numbering.vertices], return_inverse=True)
     return number, len(which)

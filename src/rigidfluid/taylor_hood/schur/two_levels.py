@@ -49,12 +49,12 @@ class TwoLevels:
         return found
 
 
-def mean_of_components(stiffness: sparse.csr_array, nodes: int, dimension: int) -> sparse.csr_array:
+def mean_of_components(matrix: sparse.csr_array, nodes: int, dimension: int) -> sparse.csr_array:
     """The mean of the blocks of K that couple a component with itself, (nodes, nodes).
 
     The mean of viscosity (∇u + ∇uᵀ, ∇v) is (1 + 1/d) viscosity (∇u, ∇v).
     """
-    indptr, indices, data = _mean(stiffness.indptr, stiffness.indices, stiffness.data, nodes, dimension)
+    indptr, indices, data = _mean(matrix.indptr, matrix.indices, matrix.data, nodes, dimension)
     return sparse.csr_array((data, indices, indptr), shape=(nodes, nodes))
 
 

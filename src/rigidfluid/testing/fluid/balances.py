@@ -73,7 +73,7 @@ class BalancesContract(FluidContract):
         self.assert_close([flow.advance.dissipation, flow.advance.boundary_power], work, scale=10.0)
 
     def test_rest_stays_rest(self, dimension: int) -> None:
-        """Bodies free and held, under one pressure everywhere, while the mesh between them sways."""
+        """Bodies free and prescribed, under one pressure everywhere, while the mesh between them sways."""
         bodies = Bodies(np.ones(2), Bodies.uniform(balls_pose(dimension)).inertia, np.array([True, False]))
         flow = self.with_balls(problem(dimension, dict.fromkeys(("x0", "x1"), _under(BACK)), bodies=2), bodies)
         sway = np.full(dimension, 0.01)  # with 0.02 it could fold cells next to the balls
@@ -88,7 +88,7 @@ class BalancesContract(FluidContract):
             self.assert_close(energies, 0.0)
 
     def test_force_balances_the_pressures(self, dimension: int) -> None:
-        """Stokes flow past held bodies between planes of symmetry: Σ F = Δp · area at once; Δp Q is dissipated."""
+        """Stokes flow past fixed bodies between planes of symmetry: Σ F = Δp · area at once; Δp Q is dissipated."""
         flow = self.with_balls(_channel(dimension, inertia=False)).after(0.1)
         force = flow.advance.hydrodynamic_wrench.force
         self.assert_close(force[:, 0].sum(), DROP, scale=10.0)
@@ -108,7 +108,7 @@ class BalancesContract(FluidContract):
         self.assert_close(flow.advance.boundary_power, 0.0, scale=driven)
         self.assert_rigid(flow, twist, box_with_balls(dimension))
 
-    @pytest.mark.parametrize("free", [False, True], ids=["held", "free"])
+    @pytest.mark.parametrize("free", [False, True], ids=["prescribed", "free"])
     def test_what_turns_as_one_has_no_stress(self, dimension: int, free: bool) -> None:
         """Stokes flow u = ω × x + U on the faces: bodies that go along, or are free to, feel nothing."""
         spin = np.array([0.8, -0.5, 1.1])[: 1 if dimension == 2 else 3]
@@ -119,7 +119,7 @@ class BalancesContract(FluidContract):
 
         pose = _off_centre(dimension)
         twist = np.column_stack([turning(0.0, pose.position), np.tile(spin, (2, 1))])
-        bodies = Bodies.uniform(pose, controlled=not free)
+        bodies = Bodies.uniform(pose, prescribed=not free)
         flow = self.with_balls(enclosed(dimension, turning, bodies=2, inertia=False), bodies, pose)
         flow = flow.after(None, twist=None if free else twist)
         _, pressure = flow.probe(samples(dimension))
@@ -129,7 +129,7 @@ class BalancesContract(FluidContract):
         self.assert_close(np.ptp(pressure), 0.0, scale=10.0)
         self.assert_rigid(flow, twist, box_with_balls(dimension))
 
-    @pytest.mark.parametrize("free", [False, True], ids=["held", "free"])
+    @pytest.mark.parametrize("free", [False, True], ids=["prescribed", "free"])
     def test_fluid_and_bodies_accelerate_as_one(self, dimension: int, free: bool) -> None:
         """u = a t everywhere needs p = -ρ a·x: on a body F = ρ V a; one of the fluid's density goes along by itself."""
         pull, mesh = np.array([0.6, -0.4, 0.3])[:dimension], box_with_balls(dimension)
@@ -175,7 +175,7 @@ class BalancesContract(FluidContract):
         rng, shift, mesh = np.random.default_rng(1), np.zeros((2, dimension)), box_with_balls(dimension)
         for number, length in enumerate((0.02, 0.02, 0.01, 0.02)):
             if number == 2:
-                flow = replace(flow, bodies=replace(flow.bodies, controlled=np.array([False, True])))
+                flow = replace(flow, bodies=replace(flow.bodies, prescribed=np.array([False, True])))
             shift = shift + length * flow.twist.velocity
             twist, push = rng.normal(size=(2, size)), 0.1 * rng.normal(size=(2, size))
             flow = flow.after(
@@ -186,11 +186,11 @@ class BalancesContract(FluidContract):
                 push=push,
             )
             found, wrench = components(flow.twist), components(flow.advance.hydrodynamic_wrench)
-            held = flow.bodies.controlled
-            np.testing.assert_array_equal(found[held], twist[held])
+            prescribed = flow.bodies.prescribed
+            np.testing.assert_array_equal(found[prescribed], twist[prescribed])
             moved = np.einsum("nij,nj->ni", flow.step.mass_matrix, found)
-            self.assert_close((moved - flow.step.load)[~held], wrench[~held], scale=np.abs(wrench).max())
-            assert np.abs(wrench[~held]).min() > 1e-6 * np.abs(wrench).max()
+            self.assert_close((moved - flow.step.load)[~prescribed], wrench[~prescribed], scale=np.abs(wrench).max())
+            assert np.abs(wrench[~prescribed]).min() > 1e-6 * np.abs(wrench).max()
             moved_mesh = replace(mesh, points=carried(mesh.points, shift))
             self.assert_rigid(flow, found, moved_mesh)
 

@@ -86,8 +86,8 @@ class FluidContract:
             self.assert_close(velocity, expected, scale=10.0)
 
     def stirred(self, dimension: int, steps: int) -> Flow:
-        """One ball driven and turned, the other one free, light and pushed, after some steps."""
-        bodies = replace(Bodies.uniform(balls_pose(dimension), mass=0.05), controlled=np.array([True, False]))
+        """One ball of prescribed twist, the other one free, light and pushed, after some steps."""
+        bodies = replace(Bodies.uniform(balls_pose(dimension), mass=0.05), prescribed=np.array([True, False]))
         flow = self.with_balls(problem(dimension, bodies=2), bodies)
         for _ in range(steps):
             flow = self.stir(flow)

@@ -43,7 +43,7 @@ class CarriedContract(FluidContract):
         self.assert_close(moved - step.load, pulled, scale=scale)
         assert np.abs(pulled).min() > 1e-4 * scale
 
-    def test_answers_are_those_of_the_whole(self, dimension: int) -> None:
+    def test_responses_are_those_of_the_whole(self, dimension: int) -> None:
         """Two steps, one with an impulse on the motion in its load, differ by the impulse response."""
         flow, step = self._pushed(dimension, given=0.3)
         impulse = 0.01 * np.random.default_rng(5).normal(size=step.load.shape)
@@ -51,10 +51,10 @@ class CarriedContract(FluidContract):
         told = flow.backend.response(flow.fluid, flow.mesh, step, impulse[None])
         twists = [components(flow.backend.advance(flow.fluid, flow.mesh, one).twist) for one in (step, pushed)]
         np.testing.assert_allclose(
-            told.by_step[0], twists[1] - twists[0], rtol=0, atol=1e-4 * np.abs(told.by_step).max()
+            told.viscous[0], twists[1] - twists[0], rtol=0, atol=1e-4 * np.abs(told.viscous).max()
         )
-        assert told.by_mass.shape == (1, *step.load.shape)
-        assert float(np.sum(told.by_mass * impulse)) > float(np.sum(told.by_step * impulse)) > 0.0
+        assert told.inviscid.shape == (1, *step.load.shape)
+        assert float(np.sum(told.inviscid * impulse)) > float(np.sum(told.viscous * impulse)) > 0.0
 
     def _pushed(self, dimension: int, given: float) -> tuple[Flow, Step]:
         """A flow that the balls stirred before, and the step in which they are pushed as a whole."""
@@ -74,8 +74,8 @@ class CarriedContract(FluidContract):
             flow.step_after(STEP),
             mass_matrix=masses[None] / STEP,
             load=5.0 * random[:1],
-            controlled=np.zeros(1, dtype=bool),
-            controlled_twist=motion,
+            prescribed=np.zeros(1, dtype=bool),
+            prescribed_twist=motion,
             impulse=motion,
             turning=motion,
             kinematics=kinematics,

@@ -18,19 +18,19 @@ from rigidfluid.core.model.types import Advance, FluidState, Mesh, Pose, Step, T
 
 @dataclass(frozen=True)
 class Bodies:
-    """Masses of n bodies: ``mass`` (n,), ``inertia`` (n, k, k); ``controlled`` (n,), whether a twist is prescribed."""
+    """Masses of n bodies: ``mass`` (n,), ``inertia`` (n, k, k); ``prescribed`` (n,), whether a twist is."""
 
     mass: FloatArray
     inertia: FloatArray
-    controlled: BoolArray
+    prescribed: BoolArray
 
     @classmethod
-    def uniform(cls, pose: Pose, mass: float = 1.0, controlled: bool = True) -> Bodies:
+    def uniform(cls, pose: Pose, mass: float = 1.0, prescribed: bool = True) -> Bodies:
         """Bodies of one mass, with an inertia that couples the axes in 3D."""
         count, dimension = pose.position.shape
         inertia = np.eye(1) if dimension == 2 else np.array([[1.0, 0.2, 0.1], [0.2, 1.5, 0.3], [0.1, 0.3, 2.0]])
         scale = 0.004 * mass
-        return cls(np.full(count, mass), np.tile(scale * inertia, (count, 1, 1)), np.full(count, controlled))
+        return cls(np.full(count, mass), np.tile(scale * inertia, (count, 1, 1)), np.full(count, prescribed))
 
 
 @dataclass(frozen=True)
@@ -119,7 +119,7 @@ class Flow:
         pose : Pose, optional
             Pose of the bodies at its end; without it they stay.
         twist : (n, d+k) array, optional
-            Twist of the controlled bodies; without it they rest.
+            Twist of the prescribed bodies; without it they rest.
         push : (n, d+k) array, optional
             Force and torque on the bodies besides the fluid's [force | force·length].
         impulse : (n, d+k) array, optional
@@ -138,8 +138,8 @@ class Flow:
             points=self.mesh.geometry if points is None else points,
             mass_matrix=mass_matrix,
             load=load + weights[0] * given,
-            controlled=self.bodies.controlled,
-            controlled_twist=nothing if twist is None else twist,
+            prescribed=self.bodies.prescribed,
+            prescribed_twist=nothing if twist is None else twist,
             impulse=given,
             load_scale=0.0,
             turning=nothing,

@@ -67,7 +67,7 @@ class LinkedContract(FluidContract):
         compliance[dimension] = 30.0
         links = Links(rows, np.append(np.zeros(dimension), [0.7, 0.0]), compliance)
         free = np.zeros(2, dtype=bool)
-        step = replace(flow.step_after(STEP), load=random.normal(size=(2, width)), controlled=free, links=links)
+        step = replace(flow.step_after(STEP), load=random.normal(size=(2, width)), prescribed=free, links=links)
         return flow, step, links
 
 

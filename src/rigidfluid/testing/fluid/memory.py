@@ -46,13 +46,13 @@ class MemoryContract(FluidContract):
         _assert_same(given, before)
         _assert_same(returned, kept)
 
-    def test_asking_for_answers_changes_nothing(self, dimension: int) -> None:
+    def test_evaluating_responses_changes_nothing(self, dimension: int) -> None:
         """Neither what is given, nor what was returned, nor, to the solver's tolerance, the step."""
         flow = self.stirred(dimension, steps=2)
         step = self.stirring(flow)
         first = flow.backend.advance(flow.fluid, flow.mesh, step)
         impulses = np.random.default_rng(6).normal(size=(3, *step.load.shape))
-        given = [flow.fluid, first.fluid, _arrays(flow.mesh), _arrays(step), _arrays(step.pose), {"asked": impulses}]
+        given = [flow.fluid, first.fluid, _arrays(flow.mesh), _arrays(step), _arrays(step.pose), {"impulses": impulses}]
         before = _copies(given)
         flow.backend.response(flow.fluid, flow.mesh, step, impulses)
         _assert_same(given, before)

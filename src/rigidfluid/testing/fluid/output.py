@@ -51,7 +51,7 @@ class OutputContract(FluidContract):
                 assert np.all(np.abs(pressure - exact.pressure(0.0, on_face)) <= _reach(exact.slope[None], distance))
 
     def test_a_free_body_has_its_twist_as_unknowns(self, dimension: int) -> None:
-        """d + k more for each that is not controlled; and more on a finer mesh."""
+        """d + k more for each that is not prescribed; and more on a finer mesh."""
         backend = self.make_backend(problem(dimension, bodies=2))
         mesh, size = self.make_mesh(box_with_balls(dimension)), 3 if dimension == 2 else 6
         held = backend.unknowns(mesh, np.array([True, True]))

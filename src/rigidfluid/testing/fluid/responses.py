@@ -19,7 +19,7 @@ from rigidfluid.testing.fluid.exact import DENSITY, problem
 from rigidfluid.testing.fluid.flow import Bodies, Flow, components, size
 
 STEP = 0.01
-"""Length of the step in most tests; responses by mass do not depend on it [time]."""
+"""Length of the step in most tests; inviscid responses do not depend on it [time]."""
 
 IMPACT = 1e-3
 """A step so short that viscosity does little in it [time]."""
@@ -34,7 +34,7 @@ RADII, GAP = np.array([1.0, 0.6]), 0.2
 class ResponsesContract(FluidContract):
     """Added masses that are known, and what the same backend's steps do."""
 
-    answer_tolerance: ClassVar[float] = 1e-4
+    response_tolerance: ClassVar[float] = 1e-4
     """Accuracy of impulse responses, relative to the largest entry."""
 
     def test_a_disk_takes_its_own_volume_of_fluid_along(self) -> None:
@@ -69,105 +69,107 @@ class ResponsesContract(FluidContract):
         flow = self._in_a_wide_box(np.ones((1, 3)), np.zeros((1, 3)), 3.0 * DENSITY * volume)
         _assert_near(_mass(flow)[:3, :3], 3.5 * DENSITY * volume * np.eye(3), 0.05)
 
-    def test_answers_are_reciprocal(self, dimension: int) -> None:
-        """Impulse responses are symmetric and positive definite: by mass and, without convection, by a step."""
-        by_mass, _ = _answers(self._stirred_free(dimension), STEP)
-        for found in (by_mass, *_answers(self._free_balls(dimension), STEP)):
-            self._assert_answers(found, found.T)
+    def test_responses_are_reciprocal(self, dimension: int) -> None:
+        """Impulse responses are symmetric and positive definite: inviscid ones and, without convection, viscous
+        ones."""
+        inviscid, _ = _responses(self._stirred_free(dimension), STEP)
+        for found in (inviscid, *_responses(self._free_balls(dimension), STEP)):
+            self._assert_responses(found, found.T)
             assert np.linalg.eigvalsh(0.5 * (found + found.T)).min() > 0.0
 
-    def test_answers_add_up(self, dimension: int) -> None:
+    def test_responses_add_up(self, dimension: int) -> None:
         """In a stirred flow impulse responses are linear in the impulse."""
         flow = self._stirred_free(dimension)
         step = flow.step_after(STEP)
         impulses = np.random.default_rng(4).normal(size=(2, *step.load.shape))
-        asked = np.concatenate([impulses, 2.0 * impulses[:1] - impulses[1:]])
-        response = flow.backend.response(flow.fluid, flow.mesh, step, asked)
-        for found in (response.by_mass, response.by_step):
-            assert found.shape == asked.shape
-            self._assert_answers(found[2], 2.0 * found[0] - found[1])
+        applied = np.concatenate([impulses, 2.0 * impulses[:1] - impulses[1:]])
+        response = flow.backend.response(flow.fluid, flow.mesh, step, applied)
+        for found in (response.inviscid, response.viscous):
+            assert found.shape == applied.shape
+            self._assert_responses(found[2], 2.0 * found[0] - found[1])
 
     def test_in_a_short_step_masses_alone_count(self) -> None:
         """Viscosity makes responses smaller, by less and less as the step gets shorter."""
         flow, apart = self._free_balls(2), []
         for length in SHORT:
-            by_mass, by_step = _answers(flow, length)
-            held = np.linalg.inv(by_step) - np.linalg.inv(by_mass)
-            least = -self.answer_tolerance * np.linalg.norm(np.linalg.inv(by_mass))
-            assert np.linalg.eigvalsh(0.5 * (held + held.T)).min() > least
-            apart.append(np.linalg.norm(by_mass - by_step) / np.linalg.norm(by_mass))
+            inviscid, viscous = _responses(flow, length)
+            drag = np.linalg.inv(viscous) - np.linalg.inv(inviscid)
+            least = -self.response_tolerance * np.linalg.norm(np.linalg.inv(inviscid))
+            assert np.linalg.eigvalsh(0.5 * (drag + drag.T)).min() > least
+            apart.append(np.linalg.norm(inviscid - viscous) / np.linalg.norm(inviscid))
         assert np.all(np.diff(apart) < 0.0), apart
         assert apart[-1] < 0.02 < 0.05 < apart[0], apart
 
-    def test_a_step_answers_as_was_told(self, dimension: int) -> None:
+    def test_a_step_responds_as_was_told(self, dimension: int) -> None:
         """Two steps of a stirred flow, one with an impulse in its load, differ by the response to it."""
         flow = self.stirred(dimension, steps=2)
         step = self.stirring(flow)
         impulse = 0.01 * np.random.default_rng(5).normal(size=step.load.shape)
         pushed = replace(step, load=step.load + step.derivative[0] * impulse, impulse=impulse)
-        told = flow.backend.response(flow.fluid, flow.mesh, step, impulse[None]).by_step[0]
+        told = flow.backend.response(flow.fluid, flow.mesh, step, impulse[None]).viscous[0]
         twists = [components(flow.taken(taken, None).twist) for taken in (step, pushed)]
-        self._assert_answers(told, twists[1] - twists[0])
+        self._assert_responses(told, twists[1] - twists[0])
         assert np.abs(told).max() > 1e-3
 
     def test_what_turns_convects_as_the_flow_of_an_impact(self, dimension: int) -> None:
-        """In fluid at rest a step with impulses that turn answers much as one in the flow that these have just made."""
+        """In fluid at rest a step with impulses that turn responds much as one in the flow that these have just
+        made."""
         flow, units = self._free_balls(dimension), _units(self._free_balls(dimension))
         twist = 5.0 * np.random.default_rng(6).normal(size=len(units))
         turning = (_mass(flow) @ twist).reshape(units[0].shape)
         blown = replace(flow.after(IMPACT, impulse=turning), past=None)
         still, turned, expected = (
-            at.backend.response(at.fluid, at.mesh, replace(at.step_after(STEP), turning=given), units).by_step
+            at.backend.response(at.fluid, at.mesh, replace(at.step_after(STEP), turning=given), units).viscous
             for at, given in ((flow, np.zeros_like(turning)), (flow, turning), (blown, np.zeros_like(turning)))
         )
-        assert np.abs(turned - still).max() > 10.0 * self.answer_tolerance * np.abs(still).max()
+        assert np.abs(turned - still).max() > 10.0 * self.response_tolerance * np.abs(still).max()
         assert np.linalg.norm(turned - expected) < 0.5 * np.linalg.norm(still - expected)
 
-    def test_without_new_points_the_present_mesh_answers(self, dimension: int) -> None:
+    def test_without_new_points_the_present_mesh_responds(self, dimension: int) -> None:
         """The same where it is at rest, in fluid that is not."""
         flow = self._stirred_free(dimension).after(STEP).after(STEP)
         step, units = flow.step_after(STEP), _units(flow)
         there, here = (
-            flow.backend.response(flow.fluid, flow.mesh, asked, units) for asked in (step, replace(step, points=None))
+            flow.backend.response(flow.fluid, flow.mesh, each, units) for each in (step, replace(step, points=None))
         )
-        self._assert_answers(here.by_mass, there.by_mass)
-        self._assert_answers(here.by_step, there.by_step)
+        self._assert_responses(here.inviscid, there.inviscid)
+        self._assert_responses(here.viscous, there.viscous)
 
     def test_without_inertia_of_the_fluid_it_only_drags(self, dimension: int) -> None:
-        """Stokes flow: M⁻¹ by mass and d₀ (d₀M + R)⁻¹ by a step, R from steady flows past bodies that are driven."""
+        """Stokes flow: inviscid M⁻¹ and viscous d₀ (d₀M + R)⁻¹, R from steady flows past bodies of prescribed twist."""
         flow = self._free_balls(dimension, inertia=False)
-        driven = self.with_balls(problem(dimension, bodies=2, inertia=False))
-        drag = [-components(driven.after(None, twist=unit).advance.hydrodynamic_wrench) for unit in _units(flow)]
+        moved = self.with_balls(problem(dimension, bodies=2, inertia=False))
+        drag = [-components(moved.after(None, twist=unit).advance.hydrodynamic_wrench) for unit in _units(flow)]
         step = flow.step_after(STEP)
-        by_mass, by_step = _answers(flow, STEP)
-        resisted = block_diag(*step.mass_matrix) + np.array(drag).reshape(by_mass.shape).T
+        inviscid, viscous = _responses(flow, STEP)
+        resisted = block_diag(*step.mass_matrix) + np.array(drag).reshape(inviscid.shape).T
         d0 = step.derivative[0]
-        self._assert_answers(by_mass, d0 * np.linalg.inv(block_diag(*step.mass_matrix)))
-        self._assert_answers(by_step, d0 * np.linalg.inv(resisted))
-        assert np.linalg.norm(by_mass - by_step) > 0.1 * np.linalg.norm(by_mass)
+        self._assert_responses(inviscid, d0 * np.linalg.inv(block_diag(*step.mass_matrix)))
+        self._assert_responses(viscous, d0 * np.linalg.inv(resisted))
+        assert np.linalg.norm(inviscid - viscous) > 0.1 * np.linalg.norm(inviscid)
 
-    def test_driven_bodies_do_not_answer(self, dimension: int) -> None:
+    def test_prescribed_bodies_do_not_respond(self, dimension: int) -> None:
         """Neither they to an impulse nor a free body to one on them, which it feels as a wall."""
         flow = self._free_balls(dimension)
-        held = replace(flow, bodies=replace(flow.bodies, controlled=np.array([True, False])))
+        fixed = replace(flow, bodies=replace(flow.bodies, prescribed=np.array([True, False])))
         width = size(flow.pose)
-        for found, free in zip(_answers(held, STEP), _answers(flow, STEP), strict=True):
+        for found, free in zip(_responses(fixed, STEP), _responses(flow, STEP), strict=True):
             assert not found[:width].any()
             assert not found[:, :width].any()
-            mass = np.linalg.inv(free)  # of both: beside a body that is held the other one's own part of it counts
-            self._assert_answers(found[width:, width:], np.linalg.inv(mass[width:, width:]))
+            mass = np.linalg.inv(free)  # of both: beside a prescribed body the other one's own part of it counts
+            self._assert_responses(found[width:, width:], np.linalg.inv(mass[width:, width:]))
 
-    def _assert_answers(self, found: FloatArray, expected: FloatArray) -> None:
-        np.testing.assert_allclose(found, expected, rtol=0, atol=self.answer_tolerance * np.abs(expected).max())
+    def _assert_responses(self, found: FloatArray, expected: FloatArray) -> None:
+        np.testing.assert_allclose(found, expected, rtol=0, atol=self.response_tolerance * np.abs(expected).max())
 
     def _free_balls(self, dimension: int, inertia: bool = True) -> Flow:
         """Two light balls in fluid at rest."""
-        bodies = Bodies.uniform(balls_pose(dimension), mass=0.05, controlled=False)
+        bodies = Bodies.uniform(balls_pose(dimension), mass=0.05, prescribed=False)
         return self.with_balls(problem(dimension, bodies=2, inertia=inertia), bodies)
 
     def _stirred_free(self, dimension: int) -> Flow:
         flow = self.stirred(dimension, steps=2)
-        return replace(flow, bodies=replace(flow.bodies, controlled=np.zeros(2, dtype=bool)))
+        return replace(flow, bodies=replace(flow.bodies, prescribed=np.zeros(2, dtype=bool)))
 
     def _in_a_wide_box(
         self, semi_axes: FloatArray, centres: FloatArray, mass: float, turned: FloatArray | None = None
@@ -182,16 +184,16 @@ class ResponsesContract(FluidContract):
         return Flow.start(self.make_backend(problem(dimension, bodies=count)), self.make_mesh(mesh), pose, bodies)
 
 
-def _answers(flow: Flow, length: float) -> tuple[FloatArray, FloatArray]:
-    """Impulse response matrices by mass and by a step, (n·(d+k), n·(d+k)) each, from impulses to twists."""
+def _responses(flow: Flow, length: float) -> tuple[FloatArray, FloatArray]:
+    """Inviscid and viscous impulse response matrices, (n·(d+k), n·(d+k)) each, from impulses to twists."""
     units = _units(flow)
     response = flow.backend.response(flow.fluid, flow.mesh, flow.step_after(length), units)
-    return response.by_mass.reshape(len(units), -1).T, response.by_step.reshape(len(units), -1).T
+    return response.inviscid.reshape(len(units), -1).T, response.viscous.reshape(len(units), -1).T
 
 
 def _mass(flow: Flow) -> FloatArray:
-    """Mass matrix of bodies and fluid, (n·(d+k), n·(d+k)): the inverse of the response by mass."""
-    return np.asarray(np.linalg.inv(_answers(flow, STEP)[0]))
+    """Mass matrix of bodies and fluid, (n·(d+k), n·(d+k)): the inverse of the inviscid response."""
+    return np.asarray(np.linalg.inv(_responses(flow, STEP)[0]))
 
 
 def _units(flow: Flow) -> FloatArray:

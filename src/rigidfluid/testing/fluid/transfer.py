@@ -44,7 +44,7 @@ class TransferContract(FluidContract):
             flow = flow.after(0.05)
 
     def test_another_numbering_changes_nothing(self, dimension: int) -> None:
-        """The same mesh with its vertices and cells in another order, in motion with a driven and a free body."""
+        """The same mesh with its vertices and cells in another order, in motion with a prescribed and a free body."""
         flow = self.stirred(dimension, steps=3)
         shift = stirring_shift(flow.time)[:, :dimension]
         there = self._transferred(flow, renumbered(box_with_balls(dimension)), shift)
@@ -63,7 +63,7 @@ class TransferContract(FluidContract):
         finer = finer_box_with_balls(dimension, stirring_shift(flow.time)[:, :dimension])
         there, twist = self._transferred(flow, finer), components(flow.twist)
         self.assert_rigid(there, twist, finer)
-        there = replace(there, past=None, bodies=replace(there.bodies, controlled=np.ones(2, dtype=bool)))
+        there = replace(there, past=None, bodies=replace(there.bodies, prescribed=np.ones(2, dtype=bool)))
         wrench = components(there.after(INSTANT, twist=twist).advance.hydrodynamic_wrench)
         assert np.abs(wrench).max() < 10.0 * before
 
@@ -100,7 +100,7 @@ class TransferContract(FluidContract):
         impulse = INSTANT * np.abs(components(after.advance.hydrodynamic_wrench)).max()
         assert impulse < 0.01 * expected, (impulse, expected)
 
-    @pytest.mark.parametrize("free", [False, True], ids=["held", "free"])
+    @pytest.mark.parametrize("free", [False, True], ids=["prescribed", "free"])
     def test_faces_set_in_motion_take_all_along(self, dimension: int, free: bool) -> None:
         """``struck``, if the backend has it: all faces drift from now on, and so do fluid and bodies of its density."""
         drift, whole = np.array([0.3, 0.2, -0.4])[:dimension], box_with_balls(dimension)

@@ -13,7 +13,7 @@ BALL = {"name": "ball", "type": "sphere", "radius": 0.1, "density": 2.0, "positi
 SIZES = {"size": 0.2, "size_body": 0.1}
 CONTRADICTIONS: dict[str, dict[str, Any]] = {
     "coarser on the body": {"size_body": 0.3},
-    "made anew within a step": {"remesh_every": 1e-3},
+    "regenerated within a step": {"remesh_every": 1e-3},
     "a coarser wall": {"size_wall": 0.3},
     "a coarser box": {"refine": [{"lower": [0.1, 0.1], "upper": [0.2, 0.2], "size": 0.3}]},
     "a box beyond the domain": {"refine": [{"lower": [1.1, 0.1], "upper": [1.2, 0.2], "size": 0.1}]},

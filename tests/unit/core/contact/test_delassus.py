@@ -1,4 +1,4 @@
-"""How contacts answer to each other's forces, against dense matrices."""
+"""How contacts respond to each other's forces, against dense matrices."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.dynamics import DryDynamics
 from rigidfluid.core.mechanics.wrenches import contact_wrench, flat
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.model.reduced_model import Asked, Coupling, reduced_model
+from rigidfluid.core.model.reduced_model import Coupling, Evaluation, reduced_model
 from rigidfluid.core.model.types import Contacts, Pose, Twist, Wrench
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
 
@@ -46,41 +46,41 @@ def test_free_bodies(dimension):
     twist = Twist(np.zeros((count, dimension)), np.zeros((count, k)))
     mass, inertia = np.array([1.0, 2.0, 3.0]), np.array([0.1, 0.2, 0.3])[:, None, None] * np.eye(k)
     driven = np.array([False, True, False])
-    movement = DryDynamics(pose, twist, mass, inertia, np.zeros_like(pose.position), driven, lambda _: np.zeros(0))
+    dynamics = DryDynamics(pose, twist, mass, inertia, np.zeros_like(pose.position), driven, lambda _: np.zeros(0))
     inverse = np.concatenate([1.0 / mass[:, None] * np.ones(dimension), [[10.0] * k, [5.0] * k, [10 / 3] * k]], axis=1)
     inverse[driven] = 0.0
     rates = gap_rates(contacts, pose)
-    found = delassus(contacts, movement, 0.01).toarray()
+    found = delassus(contacts, dynamics, 0.01).toarray()
     np.testing.assert_allclose(found, rates @ np.diag(inverse.ravel()) @ rates.T, atol=1e-12)
     assert len(contacts) > count
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_bodies_in_a_fluid_answer_to_each_other(dimension):
+def test_bodies_in_a_fluid_respond_to_each_other(dimension):
     contacts, pose = scene(dimension)
     count, k = len(pose.position), turning(dimension)
     size = count * (dimension + k)
     root = np.random.default_rng(8).normal(size=(2, size, size))
-    by_mass, friction = (r @ r.T + np.eye(size) for r in root)
+    inviscid, friction = (r @ r.T + np.eye(size) for r in root)
     model = reduced_model(
         np.arange(size),
-        by_mass,
-        np.linalg.inv(np.linalg.inv(by_mass) + friction),
+        inviscid,
+        np.linalg.inv(np.linalg.inv(inviscid) + friction),
         1.0,
-        Asked(*np.ones((2, size))),
+        Evaluation(*np.ones((2, size))),
         False,
     )
     twist = Twist(np.zeros((count, dimension)), np.zeros((count, k)))
     blocks = np.zeros((count, dimension, dimension)), np.zeros((count, k, k))
-    movement = CoupledDynamics(
+    dynamics = CoupledDynamics(
         pose, twist, np.zeros((count, dimension + k)), *blocks, Coupling(model, *np.zeros((3, size)))
     )
     rates, time = gap_rates(contacts, pose), 0.02
-    found = delassus(contacts, movement, time).toarray()
+    found = delassus(contacts, dynamics, time).toarray()
     np.testing.assert_allclose(found, found.T, atol=1e-10)
     force = np.arange(1.0, len(contacts) + 1.0)
-    movement.kick(contacts_push(contacts, force, pose), time)
-    opened = rates @ np.concatenate([movement.twist.velocity, movement.twist.angular_velocity], axis=1).ravel()
+    dynamics.kick(contacts_push(contacts, force, pose), time)
+    opened = rates @ np.concatenate([dynamics.twist.velocity, dynamics.twist.angular_velocity], axis=1).ravel()
     np.testing.assert_allclose(found @ force * time, opened, rtol=1e-9, atol=1e-10)
 
 

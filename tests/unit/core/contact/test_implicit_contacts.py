@@ -93,7 +93,7 @@ def test_two_that_meet_off_centre_keep_momentum_energy_and_do_not_spin(step, eps
 @pytest.mark.parametrize("most_dense", [0, 200])
 @pytest.mark.parametrize("step", [0.01, 0.001])
 def test_a_stack_keeps_its_energy(monkeypatch, step, most_dense):
-    """Every contact answers to the others; with sparse matrices and with full ones."""
+    """Every contact responds to the others; with sparse matrices and with full ones."""
     monkeypatch.setattr(implicit_contacts, "MOST_DENSE", most_dense)
     stack = [ball([0.5 + 0.01 * k, 0.125 + 0.225 * k], [0.0, 0.0], density=1.0 + 10.0 * k) for k in range(4)]
     scene = implicit({"law": "barrier", "epsilon": 1e-7}, *stack, end=0.4, step=step, gravity=[0.0, -5.0])

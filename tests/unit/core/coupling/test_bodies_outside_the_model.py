@@ -1,4 +1,4 @@
-"""Bodies in a fluid whose answers nobody asked for: they go on with what pulled them, contacts apart."""
+"""Bodies in a fluid whose impulse responses were not evaluated: they go on with what pulled them, contacts apart."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from rigidfluid.core.coupling.schemes import scheme_of
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mesh.no_mesh import NoMesh
 from rigidfluid.core.model.energy import Ledger
-from rigidfluid.core.model.reduced_model import Asked, Coupling, ReducedModel
+from rigidfluid.core.model.reduced_model import Coupling, Evaluation, ReducedModel
 from rigidfluid.core.model.state import MotionState, Past, State, unloaded
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Twist, Wrench
@@ -100,7 +100,7 @@ def test_what_contacts_gave_in_the_latest_step_does_not_go_on(dimension: int) ->
     linear, angular = accelerations(system, force, torque)
     before = Twist(system.twist.velocity - STEP * linear, system.twist.angular_velocity - STEP * angular)
     state = state_after(system, before, Wrench(force[None, :], torque[None, :]))
-    empty = ReducedModel(np.zeros(0, dtype=np.int64), np.zeros((0, 0)), NONE, Asked(NONE, NONE), False)
+    empty = ReducedModel(np.zeros(0, dtype=np.int64), np.zeros((0, 0)), NONE, Evaluation(NONE, NONE), False)
     end = scheme_of(system).follow(state, 0.0, STEP, Coupling(empty, NONE, NONE, NONE))
     for found, kept, given in (
         (end.twist.velocity, system.twist.velocity, linear),

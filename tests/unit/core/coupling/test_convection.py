@@ -11,7 +11,7 @@ from rigidfluid.core.coupling.schemes import scheme_of
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.fluid_step import StepEnd, step_to
 from rigidfluid.core.mechanics.wrenches import nothing
-from rigidfluid.core.model.reduced_model import Asked, Coupling, ReducedModel
+from rigidfluid.core.model.reduced_model import Coupling, Evaluation, ReducedModel
 from rigidfluid.core.model.state import MotionState, unloaded
 from rigidfluid.core.model.types import Pose, Twist
 from rigidfluid.core.run.simulation import Simulation
@@ -24,7 +24,7 @@ def path_to(simulation: Simulation, moved: float) -> BodyStep:
     state, count = simulation.state, np.array([0, 1])
     pose = Pose(state.pose.position + [[0.0, moved]], state.pose.orientation)
     zero = np.zeros(2)
-    model = ReducedModel(count, np.eye(2) / np.sqrt(MASS), zero, Asked(zero, zero), False)
+    model = ReducedModel(count, np.eye(2) / np.sqrt(MASS), zero, Evaluation(zero, zero), False)
     moved_state = MotionState(pose, state.twist, nothing(pose), nothing(pose))
     coupling = Coupling(model, zero, zero, zero)
     return BodyStep(pose, state.twist, moved_state, nothing(pose), 0.0, 0.0, 1, unloaded(pose), coupling=coupling)

@@ -6,7 +6,7 @@ from scipy.linalg import expm
 
 from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
-from rigidfluid.core.model.reduced_model import Asked, Coupling, ReducedModel, reduced_model
+from rigidfluid.core.model.reduced_model import Coupling, Evaluation, ReducedModel, reduced_model
 from rigidfluid.core.model.types import Pose, Twist, Wrench
 
 BODIES, WIDTH = 3, 3
@@ -31,8 +31,8 @@ MASS, FRICTION = positive(11), 30.0 * positive(12)
 
 
 def model_of(mass: FloatArray, friction: FloatArray, velocities: IntArray = INSIDE) -> ReducedModel:
-    by_mass, by_step = np.linalg.inv(mass), np.linalg.inv(mass + friction)
-    return reduced_model(velocities, by_mass, by_step, 1.0, Asked(*np.ones((2, len(mass)))), False)
+    inviscid, viscous = np.linalg.inv(mass), np.linalg.inv(mass + friction)
+    return reduced_model(velocities, inviscid, viscous, 1.0, Evaluation(*np.ones((2, len(mass)))), False)
 
 
 def coupling_of(model: ReducedModel, load: FloatArray, before: FloatArray | None = None) -> Coupling:
@@ -40,7 +40,7 @@ def coupling_of(model: ReducedModel, load: FloatArray, before: FloatArray | None
     return Coupling(model, load, unknown if before is None else before, np.zeros(len(load)))
 
 
-def movement(friction: FloatArray = FRICTION, load: FloatArray = LOAD, twist: Twist = TWIST) -> CoupledDynamics:
+def dynamics(friction: FloatArray = FRICTION, load: FloatArray = LOAD, twist: Twist = TWIST) -> CoupledDynamics:
     return CoupledDynamics(START, twist, RATE, LINEAR, ANGULAR, coupling_of(model_of(MASS, friction), load))
 
 
@@ -64,7 +64,7 @@ def moved(bodies: CoupledDynamics, time: float, substeps: int) -> CoupledDynamic
 
 @pytest.mark.parametrize("substeps", [1, 7])
 def test_without_friction_newton(substeps):
-    bodies, time = moved(movement(np.zeros_like(MASS)), 0.3, substeps), 0.3
+    bodies, time = moved(dynamics(np.zeros_like(MASS)), 0.3, substeps), 0.3
     gained = np.linalg.solve(MASS, LOAD + flat_wrench()[INSIDE]) * time
     start, end = joined(TWIST).ravel()[INSIDE], joined(bodies.twist).ravel()[INSIDE]
     np.testing.assert_allclose(end, start + gained, rtol=1e-9)
@@ -78,7 +78,7 @@ def test_without_friction_newton(substeps):
 @pytest.mark.parametrize("substeps", [1, 13])
 def test_with_friction_as_the_exponential_says(time, substeps):
     """U(t) = U₀ + (1 - e^(-M⁻¹R t)) R⁻¹ (Φ + F)."""
-    end = joined(moved(movement(), time, substeps).twist).ravel()[INSIDE]
+    end = joined(moved(dynamics(), time, substeps).twist).ravel()[INSIDE]
     limit = np.linalg.solve(FRICTION, LOAD + flat_wrench()[INSIDE])
     gained = limit - expm(-time * np.linalg.solve(MASS, FRICTION)) @ limit
     np.testing.assert_allclose(end - joined(TWIST).ravel()[INSIDE], gained, rtol=1e-8, atol=1e-11)
@@ -126,36 +126,36 @@ def test_without_inertia_of_the_fluid_friction_bounds_what_a_pull_adds(time):
 @pytest.mark.parametrize("factor", [0.0, 1.0, 1e12])
 def test_rest_is_kept_to_rounding(factor):
     load = -flat_wrench()[INSIDE]
-    bodies = moved(movement(factor * FRICTION, load, Twist(np.zeros((3, 2)), np.zeros((3, 1)))), 1.0, 50)
+    bodies = moved(dynamics(factor * FRICTION, load, Twist(np.zeros((3, 2)), np.zeros((3, 1)))), 1.0, 50)
     np.testing.assert_allclose(joined(bodies.twist).ravel()[INSIDE], 0.0, atol=1e-13)
 
 
 @pytest.mark.parametrize("time", [1e-4, 0.02, 5.0])
-def test_the_mean_answer_is_what_a_kick_adds(time):
-    with_wrench, without = movement(), movement()
+def test_the_mean_response_is_what_a_kick_adds(time):
+    with_wrench, without = dynamics(), dynamics()
     with_wrench.kick(WRENCH, time)
     without.kick(Wrench(np.zeros((BODIES, 2)), np.zeros((BODIES, 1))), time)
     added = (joined(with_wrench.twist) - joined(without.twist)).ravel()
-    np.testing.assert_allclose(movement().inverse_masses(time) @ flat_wrench() * time, added, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(dynamics().inverse_masses(time) @ flat_wrench() * time, added, rtol=1e-9, atol=1e-12)
 
 
 def test_outside_the_model_bodies_have_their_own_mass_and_rate():
-    end = joined(moved(movement(), 0.2, 5).twist)
+    end = joined(moved(dynamics(), 0.2, 5).twist)
     own = np.concatenate([LINEAR[1] @ WRENCH.force[1], ANGULAR[1] @ WRENCH.torque[1]])
     np.testing.assert_allclose(end[1], joined(TWIST)[1] + 0.2 * (RATE[1] + own), rtol=1e-12)
     turning = joined(TWIST)[2, 2] + 0.2 * (RATE[2, 2] + 5.0 * WRENCH.torque[2, 0])
     assert end[2, 2] == pytest.approx(turning, rel=1e-12)
 
 
-def test_the_mobility_of_one_body_is_its_block():
-    bodies, inverse = movement(), np.linalg.inv(MASS)
-    np.testing.assert_allclose(bodies.mobility[0], inverse[:2, :2], rtol=1e-10)
-    np.testing.assert_allclose(bodies.mobility[1], LINEAR[1])
-    np.testing.assert_allclose(bodies.mobility[2], inverse[3:, 3:], rtol=1e-10)
+def test_the_inverse_mass_of_one_body_is_its_block():
+    bodies, inverse = dynamics(), np.linalg.inv(MASS)
+    np.testing.assert_allclose(bodies.inverse_mass[0], inverse[:2, :2], rtol=1e-10)
+    np.testing.assert_allclose(bodies.inverse_mass[1], LINEAR[1])
+    np.testing.assert_allclose(bodies.inverse_mass[2], inverse[3:, 3:], rtol=1e-10)
     np.testing.assert_allclose(bodies.inverse_inertia[:, 0, 0], [inverse[2, 2], 4.0, 5.0], rtol=1e-10)
     along = np.array([[0.6, 0.8]])
     expected = along[0] @ inverse[:2, :2] @ along[0]
-    assert bodies.inverse_mass(np.array([0]), along)[0] == pytest.approx(expected, rel=1e-10)
+    assert bodies.inverse_mass_along(np.array([0]), along)[0] == pytest.approx(expected, rel=1e-10)
 
 
 def test_forces_do_not_move_driven_bodies():
@@ -172,7 +172,7 @@ def test_forces_do_not_move_driven_bodies():
 
 
 def test_a_copy_goes_its_own_way():
-    bodies = moved(movement(), 0.1, 3)
+    bodies = moved(dynamics(), 0.1, 3)
     before = bodies.friction_loss, joined(bodies.twist), bodies.pose.position
     moved(bodies.copied(), 0.2, 4)
     assert bodies.friction_loss == before[0]
@@ -180,7 +180,7 @@ def test_a_copy_goes_its_own_way():
     np.testing.assert_array_equal(bodies.pose.position, before[2])
 
 
-ONE = ReducedModel(np.array([0]), np.array([[0.5]]), np.array([8.0]), Asked(np.ones(1), np.ones(1)), False)
+ONE = ReducedModel(np.array([0]), np.array([[0.5]]), np.array([8.0]), Evaluation(np.ones(1), np.ones(1)), False)
 """Of mass 4, friction 32."""
 
 
@@ -250,13 +250,13 @@ def test_a_growing_load_is_followed_exactly_in_any_number_of_kicks(time):
     np.testing.assert_allclose(joined(once.twist), joined(often.twist), rtol=1e-9)
 
 
-def test_an_impulse_at_once_is_answered_by_the_masses_alone():
-    bodies = movement()
+def test_the_response_to_an_impulse_at_once_is_that_of_the_masses_alone():
+    bodies = dynamics()
     impulse = flat_wrench().reshape(BODIES, WIDTH)
     expected = joined(bodies.twist).ravel() + bodies.inverse_masses(0.0) @ impulse.ravel()
-    bodies.push(impulse)
+    bodies.apply_impulse(impulse)
     np.testing.assert_allclose(joined(bodies.twist).ravel(), expected, rtol=1e-12)
-    pushed, kicked = bodies, movement()
+    pushed, kicked = bodies, dynamics()
     kicked.kick(Wrench(1e8 * WRENCH.force, 1e8 * WRENCH.torque), 1e-8)
     for each in (pushed, kicked):
         each.kick(Wrench(0.0 * WRENCH.force, 0.0 * WRENCH.torque), 0.3)

@@ -1,4 +1,4 @@
-"""Which bodies the backend is asked for, with one that knows all answers."""
+"""Which bodies' responses are evaluated, by a backend that knows all of them."""
 
 from __future__ import annotations
 
@@ -19,31 +19,31 @@ WIDTH, D0, RADIUS = 3, 500.0, 0.1
 
 
 class Bodies:
-    """Bodies in the plane whose answers to each other fall with distance, in place of a system, and its backend."""
+    """Bodies in the plane whose responses to each other fall with distance, in place of a system, and its backend."""
 
     def __init__(self, position: FloatArray) -> None:
         self.position, count = position, len(position)
         apart = np.linalg.norm(position[:, None] - position[None, :], axis=2)
         between = np.where(apart > 0.0, 0.1 * (RADIUS / np.where(apart > 0.0, apart, 1.0)) ** 2, 1.0)
         one = np.array([[2.0, 0.1, 0.0], [0.1, 1.5, 0.05], [0.0, 0.05, 1.0]])
-        self.by_mass = np.kron(between, one)
+        self.inviscid = np.kron(between, one)
         self.friction = np.diag(np.linspace(50.0, 200.0, count * WIDTH))
-        self.by_step = self.step_answer(D0)
-        self.asked: list[IntArray] = []
+        self.viscous = self.viscous_response(D0)
+        self.evaluated: list[IntArray] = []
         self.backend = self
         self.bodies = [SimpleNamespace(bounding_radius=RADIUS)] * count
         self.dimension = 2
         self.motions = SingleBodies(*np.zeros((3, count)), None, None)
         self.twist = np.zeros((count, WIDTH))
 
-    def step_answer(self, d0: float) -> FloatArray:
-        return np.asarray(d0 * np.linalg.inv(d0 * np.linalg.inv(self.by_mass) + self.friction))
+    def viscous_response(self, d0: float) -> FloatArray:
+        return np.asarray(d0 * np.linalg.inv(d0 * np.linalg.inv(self.inviscid) + self.friction))
 
     def response(self, fluid: Any, mesh: Any, step: Any, impulses: FloatArray) -> Response:
         flat = impulses.reshape(len(impulses), -1)
-        self.asked.append(np.unique(np.nonzero(flat)[1] // WIDTH))
+        self.evaluated.append(np.unique(np.nonzero(flat)[1] // WIDTH))
         shape = impulses.shape
-        return Response((flat @ self.by_mass).reshape(shape), (flat @ self.by_step).reshape(shape))
+        return Response((flat @ self.inviscid).reshape(shape), (flat @ self.viscous).reshape(shape))
 
     def model(self, gaps: FloatArray, known: ReducedModel | None, velocities: IntArray | None = None) -> ReducedModel:
         """The model of bodies with so wide gaps to a wall each."""
@@ -73,7 +73,7 @@ def at_walls(gaps: FloatArray) -> Contacts:
     return Contacts(a, np.full(count, count), point, 0.0 * point, normal, gaps, none, flat, at_wall)
 
 
-def tightness(gaps: FloatArray) -> FloatArray:
+def film_resistance(gaps: FloatArray) -> FloatArray:
     """Of bodies with one contact each."""
     return 1.0 + 0.1 * RADIUS / gaps
 
@@ -90,110 +90,111 @@ def few() -> Bodies:
     return Bodies(row(3, 0.3))
 
 
-def test_the_answers_are_the_backend_s(few):
+def test_the_responses_are_the_backend_s(few):
     model = few.model(GAPS, None)
-    np.testing.assert_allclose(model.mobility, few.by_mass, atol=1e-12)
-    np.testing.assert_allclose(model.answer(D0, np.eye(9)), few.by_step, atol=1e-12)
+    np.testing.assert_allclose(model.inverse_mass, few.inviscid, atol=1e-12)
+    np.testing.assert_allclose(model.response(D0, np.eye(9)), few.viscous, atol=1e-12)
     assert not model.shared
-    np.testing.assert_allclose(model.asked.tightness, np.repeat(tightness(GAPS), WIDTH))
+    np.testing.assert_allclose(model.evaluation.film_resistance, np.repeat(film_resistance(GAPS), WIDTH))
 
 
-def test_nothing_is_asked_where_little_has_changed(few):
+def test_nothing_is_evaluated_where_little_has_changed(few):
     first = few.model(GAPS, None)
     assert few.model(GAPS * [1.015, 0.985, 1.0], first) is first
-    assert len(few.asked) == 1
+    assert len(few.evaluated) == 1
 
 
 def test_small_changes_add_up(few):
-    model, asked = few.model(GAPS, None), []
+    model, evaluations = few.model(GAPS, None), []
     for factor in (1.01, 1.025, 1.035):
         model = few.model(GAPS * [factor, 1.0, 1.0], model)
-        asked.append(len(few.asked))
-    assert asked == [1, 2, 2]
+        evaluations.append(len(few.evaluated))
+    assert evaluations == [1, 2, 2]
 
 
-def test_small_changes_add_up_while_others_are_asked(few):
+def test_small_changes_add_up_while_others_are_evaluated(few):
     first = few.model(GAPS, None)
     second = few.model(GAPS * [1.01, 1.5, 1.0], first)
     few.model(GAPS * [1.025, 1.5, 1.0], second)
-    assert [asked.tolist() for asked in few.asked] == [[0, 1, 2], [1], [0]]
+    assert [bodies.tolist() for bodies in few.evaluated] == [[0, 1, 2], [1], [0]]
 
 
-def test_only_those_in_changed_places_are_asked_again(few):
+def test_only_those_in_changed_places_are_evaluated_again(few):
     first = few.model(GAPS, None)
-    few.by_mass, few.by_step = 1.2 * few.by_mass, 1.1 * few.by_step
+    few.inviscid, few.viscous = 1.2 * few.inviscid, 1.1 * few.viscous
     later = few.model(GAPS * [1.0, 1.1, 1.0], first)
-    np.testing.assert_array_equal(few.asked[1], [1])
+    np.testing.assert_array_equal(few.evaluated[1], [1])
     changed = np.zeros((9, 9), dtype=bool)
     changed[3:6], changed[:, 3:6] = True, True
-    np.testing.assert_allclose(later.mobility, np.where(changed, few.by_mass, few.by_mass / 1.2), atol=1e-12)
-    np.testing.assert_allclose(later.asked.tightness, np.repeat(tightness(GAPS * [1.0, 1.1, 1.0]), WIDTH))
+    np.testing.assert_allclose(later.inverse_mass, np.where(changed, few.inviscid, few.inviscid / 1.2), atol=1e-12)
+    expected = np.repeat(film_resistance(GAPS * [1.0, 1.1, 1.0]), WIDTH)
+    np.testing.assert_allclose(later.evaluation.film_resistance, expected)
 
 
-def test_bodies_that_move_otherwise_are_asked_again(few):
+def test_bodies_that_move_otherwise_are_evaluated_again(few):
     first = few.model(GAPS, None)
     few.twist = np.zeros((3, WIDTH))
     few.twist[1, 0], few.twist[2, 2] = 0.005 * RADIUS * D0, 0.02 * D0
     few.model(GAPS, first)
-    assert [asked.tolist() for asked in few.asked] == [[0, 1, 2], [2]]
+    assert [bodies.tolist() for bodies in few.evaluated] == [[0, 1, 2], [2]]
 
 
-def test_a_contact_of_two_bodies_tightens_both(few):
+def test_a_contact_of_two_bodies_resists_both(few):
     first = few.model(GAPS, None)
     pair = at_walls(GAPS)
     pair.body_b[0] = 1
     later = few.touching(pair, first.velocities, first)
-    np.testing.assert_array_equal(few.asked[1], [1])
-    assert later.asked.tightness[3] == pytest.approx(1.0 + 0.1 * RADIUS * (1.0 / 0.01 + 1.0 / 0.02))
+    np.testing.assert_array_equal(few.evaluated[1], [1])
+    assert later.evaluation.film_resistance[3] == pytest.approx(1.0 + 0.1 * RADIUS * (1.0 / 0.01 + 1.0 / 0.02))
 
 
-def test_fewer_velocities_ask_nothing(few):
+def test_fewer_velocities_need_no_evaluation(few):
     first, some = few.model(GAPS, None), np.array([0, 1, 6, 7, 8])
     fewer = few.model(GAPS, first, some)
-    assert len(few.asked) == 1
+    assert len(few.evaluated) == 1
     np.testing.assert_array_equal(fewer.velocities, some)
-    np.testing.assert_allclose(fewer.mobility, few.by_mass[np.ix_(some, some)], atol=1e-12)
-    np.testing.assert_allclose(fewer.answer(D0, np.eye(5)), few.by_step[np.ix_(some, some)], atol=1e-12)
+    np.testing.assert_allclose(fewer.inverse_mass, few.inviscid[np.ix_(some, some)], atol=1e-12)
+    np.testing.assert_allclose(fewer.response(D0, np.eye(5)), few.viscous[np.ix_(some, some)], atol=1e-12)
 
 
-def test_another_body_is_asked_alone(few):
+def test_another_body_is_evaluated_alone(few):
     first = few.model(GAPS, None, np.arange(6))
     more = few.model(GAPS, first)
-    assert [asked.tolist() for asked in few.asked] == [[0, 1], [2]]
-    np.testing.assert_allclose(more.mobility, few.by_mass, atol=1e-12)
+    assert [bodies.tolist() for bodies in few.evaluated] == [[0, 1], [2]]
+    np.testing.assert_allclose(more.inverse_mass, few.inviscid, atol=1e-12)
 
 
-def test_without_velocities_nothing_is_asked(few):
+def test_without_velocities_nothing_is_evaluated(few):
     assert len(few.model(GAPS, None, np.arange(0)).velocities) == 0
-    assert few.asked == []
+    assert few.evaluated == []
 
 
 def test_a_step_of_another_length_remembers_mass_and_friction(few):
     first = few.model(GAPS, None)
-    few.by_step = few.step_answer(2.0 * D0)
+    few.viscous = few.viscous_response(2.0 * D0)
     later = few.touching(at_walls(GAPS * [1.0, 1.1, 1.0]), first.velocities, first, 2.0 * D0)
-    np.testing.assert_array_equal(few.asked[1], [1])
-    np.testing.assert_allclose(later.answer(2.0 * D0, np.eye(9)), few.by_step, atol=1e-12)
+    np.testing.assert_array_equal(few.evaluated[1], [1])
+    np.testing.assert_allclose(later.response(2.0 * D0, np.eye(9)), few.viscous, atol=1e-12)
 
 
-def test_many_share_questions():
-    """The nearest of those pushed is the one that a body is taken to answer to; the rest is small."""
+def test_many_share_right_sides():
+    """The nearest of those pushed is the one that a body is taken to respond to; the rest is small."""
     count = 4 * ALONE
-    many, questions = Bodies(row(count, 0.25)), []
-    answer = many.response
+    many, sides = Bodies(row(count, 0.25)), []
+    response = many.response
 
     def counted(fluid: Any, mesh: Any, step: Any, impulses: FloatArray) -> Response:
-        questions.append(len(impulses))
-        return answer(fluid, mesh, step, impulses)
+        sides.append(len(impulses))
+        return response(fluid, mesh, step, impulses)
 
     many.response = counted  # type: ignore[method-assign]
     model = many.model(np.full(count, 0.01), None)
     assert model.shared
-    assert questions[0] < 0.2 * count * WIDTH
-    size = np.linalg.norm(many.by_mass, ord=2)
-    assert np.linalg.norm(model.mobility - many.by_mass, ord=2) < 0.02 * size
-    assert np.linalg.norm(model.answer(D0, np.eye(count * WIDTH)) - many.by_step, ord=2) < 0.02 * size
+    assert sides[0] < 0.2 * count * WIDTH
+    size = np.linalg.norm(many.inviscid, ord=2)
+    assert np.linalg.norm(model.inverse_mass - many.inviscid, ord=2) < 0.02 * size
+    assert np.linalg.norm(model.response(D0, np.eye(count * WIDTH)) - many.viscous, ord=2) < 0.02 * size
     own = np.arange(count * WIDTH).reshape(count, WIDTH)
     for body in own:
         block = np.ix_(body, body)
-        np.testing.assert_allclose(model.mobility[block], many.by_mass[block], atol=0.02)
+        np.testing.assert_allclose(model.inverse_mass[block], many.inviscid[block], atol=0.02)

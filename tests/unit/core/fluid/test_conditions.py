@@ -86,7 +86,7 @@ def test_at_a_corner_walls_hold_the_fluid_and_those_at_rest_before_others() -> N
     nothing = np.empty((0, 3))
     surfaces.enclosed = False  # nothing is scaled
     points = numbering.node_points(mesh.geometry)
-    found = surfaces.prescribed(0.0, points, nothing[:, :2], nothing, np.empty(0, dtype=bool))
+    found = surfaces.prescribed_velocity(0.0, points, nothing[:, :2], nothing, np.empty(0, dtype=bool))
     at = {tuple(point): float(velocity[0]) for point, velocity in zip(points, found, strict=True)}
     corners = (0.0, 0.5), (0.0, 1.0), (0.5, 1.0), (1.0, 1.0), (0.0, 0.0)
     assert [at[corner] for corner in corners] == [1.0, 2.0, 2.0, 0.0, 0.0]

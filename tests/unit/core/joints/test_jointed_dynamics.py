@@ -118,7 +118,7 @@ def test_accelerations_are_those_of_the_linked_motion():
     links = linkage(pose, [joint("hinge", 0, None, [0.0, 0.0])])
     motion = jointed(pose, Twist(np.array([[0.0, 6.0]]), np.array([[3.0]])), links)
     assert motion.max_acceleration(0.02)[0] == pytest.approx(18.0, rel=1e-3)
-    assert motion.angular_pull(0.02)[0] < 1e-9
+    assert motion.max_angular_acceleration(0.02)[0] < 1e-9
     np.testing.assert_array_equal(motion.pose.position, pose.position)
 
 
@@ -135,7 +135,7 @@ def test_a_joint_that_is_torn_apart_is_rejected():
     pose = Pose(np.array([[0.0, 0.0], [1.0, 0.0]]), np.zeros((2, 1)))
     given = np.array([[0.0, 0.0, 0.0], [40.0, 0.0, 0.0]])
     end = joint("hinge", 0, 1, [0.5, 0.2])
-    links = linkage(pose, [end], [ground_link(0, 2, [0])], controlled=[1], given=lambda _: given)
+    links = linkage(pose, [end], [ground_link(0, 2, [0])], prescribed=[1], given=lambda _: given)
     held, weightless = np.array([False, True]), np.zeros((2, 2))
     free = DryDynamics(pose, split(given, 2), *masses(2, 2), weightless, held, lambda _: given)
     with pytest.raises(StepRejected, match=r"joints"):
@@ -152,7 +152,7 @@ def test_a_damper_against_a_constant_push_is_exact(strength):
 
 
 def test_dampers_that_act_on_each_other_are_exact_together():
-    answer, compliance = np.array([[2.0, 0.7], [0.7, 1.0]]), np.array([0.5, 0.1])
+    delassus, compliance = np.array([[2.0, 0.7], [0.7, 1.0]]), np.array([0.5, 0.1])
     before = np.array([1.0, -2.0])
-    impulse = damper_impulse(answer, compliance, before, before, 0.3)
-    np.testing.assert_allclose(before + answer @ impulse, expm(-0.3 * answer / compliance) @ before, rtol=1e-12)
+    impulse = damper_impulse(delassus, compliance, before, before, 0.3)
+    np.testing.assert_allclose(before + delassus @ impulse, expm(-0.3 * delassus / compliance) @ before, rtol=1e-12)

@@ -135,7 +135,7 @@ def test_closed_poses_fit_to_rounding_and_the_centre_of_mass_stays(dimension):
 
 
 def test_bodies_of_given_motion_stay_where_they_are():
-    pose, links = chain(2, controlled=[1])
+    pose, links = chain(2, prescribed=[1])
     apart = moved(pose, np.ones((4, 3)), 0.1)
     closed = links.closed(apart, 0.0)
     np.testing.assert_array_equal(closed.position[1], apart.position[1])
@@ -144,8 +144,8 @@ def test_bodies_of_given_motion_stay_where_they_are():
 
 def test_what_cannot_be_closed_is_rejected():
     pose = Pose(np.array([[0.0, 0.0], [1.0, 0.0]]), np.zeros((2, 1)))
-    links = linkage(pose, [joint("hinge", 0, 1, [0.5, 0.0])], controlled=[1])
-    held = linkage(pose, [joint("hinge", 0, 1, [0.5, 0.2])], [ground_link(0, 2, [0])], controlled=[1])
+    links = linkage(pose, [joint("hinge", 0, 1, [0.5, 0.0])], prescribed=[1])
+    held = linkage(pose, [joint("hinge", 0, 1, [0.5, 0.2])], [ground_link(0, 2, [0])], prescribed=[1])
     far = Pose(pose.position + [[0.0, 0.0], [3.0, 0.0]], pose.orientation)
     assert np.abs(links.misfit(links.closed(far, 0.0), 0.0)).max() < 1e-12
     with pytest.raises(StepRejected, match=r"joints.*cannot be closed"):
@@ -160,7 +160,7 @@ def test_a_pose_in_which_two_joints_hold_the_same_is_rejected():
 @DIMENSIONS
 def test_given_motion_is_in_the_rates(dimension):
     given = np.random.default_rng(5).normal(size=(4, 3 if dimension == 2 else 6))
-    pose, links = chain(dimension, controlled=[1], given=lambda _: given)
+    pose, links = chain(dimension, prescribed=[1], given=lambda _: given)
     plain = chain(dimension)[1].links(pose, 0.2)
     here = links.links(pose, 0.2)
     assert not here.rows[:, 1].any()
@@ -260,7 +260,7 @@ def test_clusters_end_at_the_ground_and_at_what_is_given():
     pose = placed(6, 2)
     points = pose.position
     joints = [joint("hinge", 3, 1, points[1]), joint("rod", 3, 4, points[3]), joint("hinge", 0, 5, points[5])]
-    links = linkage(pose, [*joints, joint("hinge", 5, 4, points[4])], controlled=[5])
+    links = linkage(pose, [*joints, joint("hinge", 5, 4, points[4])], prescribed=[5])
     np.testing.assert_array_equal(links.clusters, [0, 1, 2, 1, 1, 5])
     np.testing.assert_array_equal(links.linked, [True, True, False, True, True, True])
     grounded = linkage(pose, [joint("hinge", 0, None, points[0])], [ground_link(1, 2, stiffness=[1.0, 1.0, 0.0])])
@@ -293,9 +293,9 @@ def test_a_held_direction_that_a_joint_holds_already_is_refused():
 def test_joints_without_a_body_that_moves_freely_are_refused():
     pose = placed(2, 2)
     with pytest.raises(SceneError, match=r"joint 'joint0': found nothing that moves freely"):
-        linkage(pose, [joint("hinge", 0, 1, pose.position[0])], controlled=[0, 1])
+        linkage(pose, [joint("hinge", 0, 1, pose.position[0])], prescribed=[0, 1])
     with pytest.raises(SceneError, match=r"joint 'joint0': found nothing that moves freely"):
-        linkage(pose, [joint("hinge", 0, None, pose.position[0])], controlled=[0])
+        linkage(pose, [joint("hinge", 0, None, pose.position[0])], prescribed=[0])
 
 
 def test_parts_of_one_mechanism_are_not_joined(carried):

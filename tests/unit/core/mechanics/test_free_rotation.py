@@ -72,7 +72,7 @@ def test_a_thousand_periods_keep_energy_and_momentum():
     scene = scene_from_dict(dry_tables(body | {"angular_velocity": START.tolist()}, end=1000 * PERIOD, step=PERIOD / 4))
     run = Simulation(scene, None, False)
     system, inertia = run.system, np.diag(INERTIA)[None]
-    motions = SingleBodies(system.mass, inertia, system.controlled, system.pose, system.twist)
+    motions = SingleBodies(system.mass, inertia, system.prescribed, system.pose, system.twist)
     run.stepper.system = replace(system, inertia=inertia, motions=motions)
     run.go()
     history, momentum = run.history.bodies, INERTIA * START

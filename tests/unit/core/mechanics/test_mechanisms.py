@@ -202,7 +202,7 @@ def test_what_contacts_are_told_of_masses_is_what_kicks_do(dimension):
     other = pair(name="other", dimension=dimension, position=[0.5, 0.2, 0.5][:dimension])
     system = build_system(scene(pair("hammer", dimension, ratio=3.0), other))
     mechanisms = system.motions
-    inert = mechanisms.mass, mechanisms.inertia(0.0), np.zeros((2, dimension)), mechanisms.controlled, None
+    inert = mechanisms.mass, mechanisms.inertia(0.0), np.zeros((2, dimension)), mechanisms.prescribed, None
     motions = DryDynamics(mechanisms.pose, mechanisms.twist, *inert)
     bodies = ComponentDynamics(motions, mechanisms, 0.0)
     force = np.random.default_rng(1).normal(size=(4, dimension))
@@ -210,7 +210,7 @@ def test_what_contacts_are_told_of_masses_is_what_kicks_do(dimension):
     wrench = Wrench(force, np.random.default_rng(2).normal(size=system.twist.angular_velocity.shape))
     inverse, alone = bodies.inverse_masses(1.0), Wrench(np.zeros_like(force), np.zeros_like(wrench.torque))
     alone.force[1] = force[1]
-    lightness = bodies.inverse_mass(np.array([1]), force[1:2])[0], force[1] @ bodies.mobility[1] @ force[1]
+    lightness = bodies.inverse_mass_along(np.array([1]), force[1:2])[0], force[1] @ bodies.inverse_mass[1] @ force[1]
     one = bodies.copied()
     one.kick(alone, 0.1)
     np.testing.assert_allclose(lightness, 10.0 * force[1] @ one.twist.velocity[1])
@@ -423,7 +423,7 @@ def test_what_meets_a_wall_is_as_heavy_as_the_whole():
     one, other = (build_system(scene(pair(ratio=ratio), contact=LAW, gravity=[0.0, -9.81])) for ratio in (1.0, 3.0))
     np.testing.assert_allclose(one.loads.mass, one.motions.mass[0])
     np.testing.assert_allclose(other.loads.weight, 2.0 * one.loads.weight)
-    assert one.leverage.min() > 0.0
+    assert one.rotational_factor.min() > 0.0
 
 
 def test_names_of_components_are_taken():

@@ -1,4 +1,4 @@
-"""When a moved mesh is made anew."""
+"""When a moved mesh is regenerated."""
 
 from __future__ import annotations
 

@@ -43,9 +43,9 @@ def test_a_first_step_dissipates_what_its_own_viscous_impulse_takes(stiffness: f
     assert begun.after(step, power, Work(), 0.5 * end**2, 0.0).residual == pytest.approx(0.0, abs=1e-12)
 
 
-def grown(ledger: Ledger, by: float, cause: Cause | None, leak: float = 0.0) -> Ledger:
+def grown(ledger: Ledger, by: float, cause: Cause | None, spurious_flux: float = 0.0) -> Ledger:
     """A step of one tenth later; energy has vanished, some of it through faces."""
-    after = ledger.after(0.1, Power(leak=leak), Work(), ledger.kinetic - by, 0.0)
+    after = ledger.after(0.1, Power(spurious_flux=spurious_flux), Work(), ledger.kinetic - by, 0.0)
     return after.attributed(ledger, 0.1, cause)
 
 
@@ -54,7 +54,7 @@ def test_the_residual_is_put_to_its_causes() -> None:
     ledger = grown(ledger, 0.02, None)
     ledger = grown(ledger, 0.04, Cause.CONTACTS)
     assert ledger.in_impact
-    ledger = grown(ledger, 0.07, None, leak=1.0)
+    ledger = grown(ledger, 0.07, None, spurious_flux=1.0)
     parts = ledger.residual_start, ledger.residual_contacts, ledger.residual_mesh, ledger.residual_steps
     assert parts == pytest.approx((0.01, 0.04, 0.05, 0.04))
     assert not ledger.in_impact

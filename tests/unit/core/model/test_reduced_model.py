@@ -1,10 +1,10 @@
-"""Mass and friction of bodies in a fluid, from its answers to impulses at once and at the end of a step."""
+"""Mass and resistance of bodies in a fluid, from their inviscid and viscous impulse responses."""
 
 import numpy as np
 import pytest
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.model.reduced_model import Asked, ReducedModel, expected_load, load_within, reduced_model
+from rigidfluid.core.model.reduced_model import Evaluation, ReducedModel, expected_load, load_within, reduced_model
 
 D0, COUNT = 750.0, 5
 
@@ -15,20 +15,20 @@ def positive(seed: int) -> FloatArray:
     return root @ root.T + 0.5 * np.eye(COUNT)
 
 
-def made(by_mass: FloatArray, by_step: FloatArray, shared: bool = False) -> ReducedModel:
-    return reduced_model(np.arange(COUNT), by_mass, by_step, D0, Asked(*np.ones((2, COUNT))), shared)
+def made(inviscid: FloatArray, viscous: FloatArray, shared: bool = False) -> ReducedModel:
+    return reduced_model(np.arange(COUNT), inviscid, viscous, D0, Evaluation(*np.ones((2, COUNT))), shared)
 
 
 MASS, FRICTION = positive(1), 400.0 * positive(2)
-BY_MASS, BY_STEP = np.linalg.inv(MASS), D0 * np.linalg.inv(D0 * MASS + FRICTION)
-MODEL = made(BY_MASS, BY_STEP)
+INVISCID, VISCOUS = np.linalg.inv(MASS), D0 * np.linalg.inv(D0 * MASS + FRICTION)
+MODEL = made(INVISCID, VISCOUS)
 
 
 def test_modes_are_those_of_mass_and_friction():
     np.testing.assert_allclose(MODEL.modes.T @ MASS @ MODEL.modes, np.eye(COUNT), atol=1e-12)
     friction = MODEL.modes.T @ FRICTION @ MODEL.modes
     np.testing.assert_allclose(friction, np.diag(MODEL.decay), atol=1e-10 * MODEL.decay.max())
-    np.testing.assert_allclose(MODEL.mobility, BY_MASS, rtol=1e-12, atol=1e-13)
+    np.testing.assert_allclose(MODEL.inverse_mass, INVISCID, rtol=1e-12, atol=1e-13)
 
 
 def test_mass_and_friction_are_found_again():
@@ -37,30 +37,30 @@ def test_mass_and_friction_are_found_again():
     np.testing.assert_allclose(MODEL.friction_times(velocity), FRICTION @ velocity, rtol=1e-10)
 
 
-def test_the_answer_is_that_of_the_step():
-    np.testing.assert_allclose(MODEL.answer(D0, np.eye(COUNT)), BY_STEP, rtol=1e-11, atol=1e-13)
+def test_the_response_is_that_of_the_step():
+    np.testing.assert_allclose(MODEL.response(D0, np.eye(COUNT)), VISCOUS, rtol=1e-11, atol=1e-13)
     impulse = np.array([1.0, -2.0, 0.5, 0.0, 3.0])
-    np.testing.assert_allclose(MODEL.answer(D0, impulse), BY_STEP @ impulse, rtol=1e-11, atol=1e-13)
+    np.testing.assert_allclose(MODEL.response(D0, impulse), VISCOUS @ impulse, rtol=1e-11, atol=1e-13)
 
 
-def test_the_answer_of_another_step_has_the_same_mass_and_friction():
+def test_the_response_in_another_step_has_the_same_mass_and_friction():
     expected = 3.0 * D0 * np.linalg.inv(3.0 * D0 * MASS + FRICTION)
-    np.testing.assert_allclose(MODEL.answer(3.0 * D0, np.eye(COUNT)), expected, rtol=1e-10, atol=1e-13)
+    np.testing.assert_allclose(MODEL.response(3.0 * D0, np.eye(COUNT)), expected, rtol=1e-10, atol=1e-13)
 
 
 @pytest.mark.parametrize("shared", [False, True])
 def test_friction_is_never_negative(shared):
     skew = np.triu(np.ones((COUNT, COUNT)), 1) - np.tril(np.ones((COUNT, COUNT)), -1)
-    for by_step in (BY_STEP + 0.05 * skew, 1.3 * BY_MASS, BY_MASS + 0.1 * positive(7)):
-        model = made(BY_MASS, by_step, shared)
+    for viscous in (VISCOUS + 0.05 * skew, 1.3 * INVISCID, INVISCID + 0.1 * positive(7)):
+        model = made(INVISCID, viscous, shared)
         assert model.decay.min() >= 0.0
         assert np.isfinite(model.decay).all()
-    np.testing.assert_array_equal(made(BY_MASS, 1.3 * BY_MASS).decay, 0.0)
+    np.testing.assert_array_equal(made(INVISCID, 1.3 * INVISCID).decay, 0.0)
 
 
-def test_the_unsymmetric_part_of_an_answer_is_dropped():
+def test_the_unsymmetric_part_of_a_response_is_dropped():
     skew = np.triu(np.ones((COUNT, COUNT)), 1) - np.tril(np.ones((COUNT, COUNT)), -1)
-    np.testing.assert_allclose(made(BY_MASS, BY_STEP + 0.05 * skew).decay, MODEL.decay, rtol=1e-8)
+    np.testing.assert_allclose(made(INVISCID, VISCOUS + 0.05 * skew).decay, MODEL.decay, rtol=1e-8)
 
 
 def test_the_load_does_not_depend_on_the_impulse_of_its_step():
@@ -68,7 +68,7 @@ def test_the_load_does_not_depend_on_the_impulse_of_its_step():
     freely, now, past, before = rng.normal(size=(4, COUNT))
     derivative = np.array([D0, -1000.0, 250.0])
     loads = [
-        load_within(MODEL, derivative, (freely + BY_STEP @ impulse, now, past), (impulse, before))
+        load_within(MODEL, derivative, (freely + VISCOUS @ impulse, now, past), (impulse, before))
         for impulse in (np.zeros(COUNT), 10.0 * rng.normal(size=COUNT))
     ]
     np.testing.assert_allclose(loads[1], loads[0], atol=1e-10 * np.abs(loads[0]).max())
@@ -94,13 +94,13 @@ def test_the_expected_load_of_a_constant_force_and_drag():
     np.testing.assert_allclose(found, force - FRICTION @ now, atol=1e-10 * np.abs(FRICTION @ now).max())
 
 
-def test_where_questions_are_shared_every_mode_answers():
-    """Their errors may make the answers slightly indefinite, and a mode without any answer would never move."""
-    by_mass, by_step = np.diag([1.0, 1.0, 1.0, 1.0, 1.0]), 0.5 * np.eye(COUNT)
-    by_step[:2, :2] = [[0.5, 0.51], [0.51, 0.5]]
-    assert np.linalg.eigvalsh(by_step).min() < 0.0
-    shared = made(by_mass, by_step, shared=True)
+def test_where_right_sides_are_shared_every_mode_responds():
+    """Their errors may make the responses slightly indefinite, and a mode without any response would never move."""
+    inviscid, viscous = np.diag([1.0, 1.0, 1.0, 1.0, 1.0]), 0.5 * np.eye(COUNT)
+    viscous[:2, :2] = [[0.5, 0.51], [0.51, 0.5]]
+    assert np.linalg.eigvalsh(viscous).min() < 0.0
+    shared = made(inviscid, viscous, shared=True)
     assert shared.decay.max() == pytest.approx(D0 * (1.0 / 0.05 - 1.0))
-    assert made(by_mass, by_step).decay.max() > 1e9 * D0
-    by_mass[2:4, 2:4] = [[1.0, 1.02], [1.02, 1.0]]
-    assert np.linalg.eigvalsh(made(by_mass, by_step, shared=True).mobility).min() == pytest.approx(0.1)
+    assert made(inviscid, viscous).decay.max() > 1e9 * D0
+    inviscid[2:4, 2:4] = [[1.0, 1.02], [1.02, 1.0]]
+    assert np.linalg.eigvalsh(made(inviscid, viscous, shared=True).inverse_mass).min() == pytest.approx(0.1)

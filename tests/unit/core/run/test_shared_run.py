@@ -30,7 +30,7 @@ FALL = {
     "body": {"position": [1.0, 0.24], "velocity": [0.0, -2.0]},
     "fluid": {"tolerance": 1e-12},
 }
-"""A disk that nears the floor; its mesh is made anew on the way."""
+"""A disk that nears the floor; its mesh is regenerated on the way."""
 GATHERED = FALL["fluid"] | {"backend": "gathered"}
 
 
@@ -89,7 +89,7 @@ def assert_nearly_same_tables(one, other):
 
 @pytest.mark.parametrize("detector", ["sphere", "narrow_band"])
 def test_the_run_is_that_of_one_process(detector):
-    """But for what bodies are found to answer to impulses, by factors of single precision."""
+    """But for the impulse responses of bodies, by factors of single precision."""
     serial = rigidfluid.run(fall(contact={"detector": detector}))
     assert serial.summary["remeshes"] > 0
     for count in (1, 3):

@@ -203,7 +203,7 @@ BAD = {
     "shortest too long": ({"time.shortest": 0.1}, "time.shortest: found 0.1", "time.step = 0.001", "Shorten"),
     "wall coarser than mesh": ({"mesh.size_wall": 0.2}, "mesh.size_wall: found 0.2", "mesh.size = 0.15", "Refine it"),
     "body coarser than mesh": ({"mesh.size_body": 0.2}, "mesh.size_body: found 0.2", "mesh.size = 0.15", "Swap"),
-    "mesh made anew too often": (
+    "mesh regenerated too often": (
         {"mesh.remesh_every": 1e-4},
         "mesh.remesh_every: found 0.0001",
         "time.step = 0.001",
@@ -418,7 +418,7 @@ def test_system_in_2d() -> None:
     np.testing.assert_allclose(system.weight, [[0.0, -981 * 0.25 * area]])
     np.testing.assert_array_equal(system.pose.orientation, [[0.3]])
     np.testing.assert_array_equal(system.twist.angular_velocity, [[2.0]])
-    assert not system.controlled.any()
+    assert not system.prescribed.any()
 
 
 @pytest.mark.parametrize("work", [rigidfluid.run, check, build_system], ids=lambda work: work.__name__)
@@ -466,12 +466,12 @@ def test_angle_in_3d_is_refused() -> None:
 def test_prescribed_motion_is_the_derivative_of_the_displacement() -> None:
     motion = {"velocity": [1.0, 0.0], "angular_velocity": 0.5, "amplitude": [0.0, 0.2], "frequency": 3.0}
     system = build_system(scene_from_dict(changed({"body.0.prescribed": motion, "body.1": {**SECOND, "fixed": True}})))
-    assert system.controlled.all()
+    assert system.prescribed.all()
     np.testing.assert_allclose(system.twist.velocity[0], [1.0, 0.2 * 6 * np.pi])
     step = 1e-6
     displacement = [0.2 * np.sin(6 * np.pi * t) for t in (0.4 - step, 0.4 + step)]
     expected = [[1.0, np.diff(displacement)[0] / (2 * step), 0.5], [0.0, 0.0, 0.0]]
-    np.testing.assert_allclose(system.controlled_twist(0.4), expected, rtol=1e-8)
+    np.testing.assert_allclose(system.prescribed_twist(0.4), expected, rtol=1e-8)
 
 
 def test_later_boundaries_override_earlier_ones() -> None:

@@ -19,7 +19,7 @@ from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.inserter import Inserter
 from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
-from rigidfluid.core.model.reduced_model import Asked, reduced_model
+from rigidfluid.core.model.reduced_model import Evaluation, reduced_model
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.run.run import run
 from rigidfluid.core.setup.geometry_checks import surfaces_of
@@ -48,7 +48,7 @@ MEETING: Table = {
     "time": {"end": 0.008, "step": 0.001},
     "output": {"every": 0.008},
 }
-"""Two disks run into each other in a box of fluid, whose mesh is made anew twice."""
+"""Two disks run into each other in a box of fluid, whose mesh is regenerated twice."""
 
 ELLIPSES = [
     PAIR[0] | {"type": "ellipsoid", "semi_axes": [0.14, 0.09], "angle": 0.3, "angular_velocity": 10.0},
@@ -170,9 +170,9 @@ def test_a_mesh_in_a_domain_of_facets_is_the_same(scale: float, tmp_path: Path) 
     np.testing.assert_allclose(other.points / scale, first.points, rtol=0, atol=1e-9)
 
 
-def test_answers_of_turning_and_of_moving_may_have_any_sizes() -> None:
+def test_responses_of_turning_and_of_moving_may_have_any_sizes() -> None:
     """1/(mass · length²) beside 1/mass, in metres of a body of a nanometre."""
     arm = np.diag([1.0, 1.0, 1e9])
-    by_mass = arm @ np.array([[2.0, 0.1, 0.4], [0.1, 2.0, 0.3], [0.4, 0.3, 4.0]]) @ arm
-    model = reduced_model(np.arange(3), by_mass, by_mass / 3.0, 2.0, Asked(np.ones(3), np.ones(3)), shared=False)
-    np.testing.assert_allclose(model.mobility, by_mass, rtol=1e-12)
+    inviscid = arm @ np.array([[2.0, 0.1, 0.4], [0.1, 2.0, 0.3], [0.4, 0.3, 4.0]]) @ arm
+    model = reduced_model(np.arange(3), inviscid, inviscid / 3.0, 2.0, Evaluation(np.ones(3), np.ones(3)), shared=False)
+    np.testing.assert_allclose(model.inverse_mass, inviscid, rtol=1e-12)

@@ -124,7 +124,7 @@ def test_iterations_depend_neither_on_the_cells_nor_on_the_step(iterations):
 
 
 def test_light_bodies_and_viscous_fluids_take_few_more(iterations):
-    """Bodies turn with the fluid: without the velocities' answer their own inertia would be far too heavy."""
+    """Bodies turn with the fluid: without the velocities' response their own inertia would be far too heavy."""
     for body in BALLS["body"]:
         assert body["density"] > 1.0
     scene = balls(viscosity=100.0, tolerance=1e-8, solver="schur").to_dict()

@@ -1,10 +1,10 @@
-"""Under mpirun: answers to impulses by DOLFINx' backend on all processes beside those of scikit-fem's on each alone.
+"""Under mpirun: impulse responses by DOLFINx' backend on all processes beside those of scikit-fem's on each alone.
 
-    mpirun -n 2 python shared_answers.py SCENE MORE
+    mpirun -n 2 python shared_responses.py SCENE MORE
 
-SCENE is a file with a scene in JSON. Prints what both answer after some steps with a new mesh among them, how fluid and
-bodies answer to impulses in a step, and how many bytes each process holds after it was asked again, so many times each
-time as MORE lists.
+SCENE is a file with a scene in JSON. Prints the responses of both after some steps with a new mesh among them, how
+fluid and bodies respond to impulses in a step, and how many bytes each process holds after they were evaluated again,
+as often each time as MORE lists.
 """
 
 import json
@@ -22,7 +22,7 @@ from rigidfluid.core.mechanics.wrenches import nothing
 STEPS = 3
 
 
-def answers(simulation):
+def responses(simulation):
     """On the present mesh, to each component of an impulse by itself, and of a step to all of them."""
     system, state = simulation.system, simulation.state
     end = StepEnd(1.0, simulation.model.time.step, state.pose, nothing(state.pose))
@@ -34,8 +34,8 @@ def answers(simulation):
     advance = system.backend.advance(state.fluid, state.mesh, pushed)
     turned = system.backend.advance(state.fluid, state.mesh, replace(pushed, turning=impulse))
     return {
-        "by_mass": response.by_mass.tolist(),
-        "by_step": response.by_step.tolist(),
+        "inviscid": response.inviscid.tolist(),
+        "viscous": response.viscous.tolist(),
         "twist": advance.twist.velocity.tolist(),
         "turned": turned.twist.velocity.tolist(),
     }
@@ -46,11 +46,11 @@ def main():
     shared, alone = (started(scene, backend=name) for name in ("dolfinx", "scikit-fem"))
     for simulation in (shared, alone):
         go_on(simulation, STEPS)
-    found, expected = answers(shared), answers(alone)
+    found, expected = responses(shared), responses(alone)
     held = []
     for times in json.loads(sys.argv[2]):
         for _ in range(times):
-            answers(shared)
+            responses(shared)
         held.append(resident())
     everyones = MPI.COMM_WORLD.gather((found, held))
     if everyones is not None:

@@ -1,4 +1,4 @@
-"""Leverage of a body: its inverse mass at a surface point over that at the centre of mass, less one."""
+"""Rotational factor of a body: its inverse mass at a surface point over that at the centre of mass, less one."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.interfaces import Body
 
 ELLIPSOIDS = 5.0
-"""Bound of the leverage of homogeneous ellipsoids, however slender."""
+"""Bound of the rotational factor of homogeneous ellipsoids, however slender."""
 
 _SAMPLES = 1000
 
 
-def most_leverage(body: Body) -> float:
+def largest_rotational_factor(body: Body) -> float:
     """Greatest m (r × n)·I⁻¹(r × n) for points r of the surface and any unit n, as at corners; 0 for balls [1].
 
     The inverse effective mass at a surface point is at most 1 + this over the mass.
@@ -24,12 +24,12 @@ def most_leverage(body: Body) -> float:
         return ELLIPSOIDS
     if body.dimension == 2:
         return float(body.bounding_radius**2 / body.unit_inertia[0, 0])
-    return leverage_at(surface_points(body), body.unit_inertia)
+    return rotational_factor_at(surface_points(body), body.unit_inertia)
 
 
 def surface_points(body: Body) -> FloatArray:
-    """Points (N, d) spread over the surface, as far out as it reaches; the vertices of facets, as leverage has its
-    maximum at one of them [length]."""
+    """Points (N, d) spread over the surface, as far out as it reaches; the vertices of facets, as the rotational
+    factor has its maximum at one of them [length]."""
     if body.facets is not None:
         return body.facets.points
     points = body.sample_surface(_SAMPLES)
@@ -37,9 +37,9 @@ def surface_points(body: Body) -> FloatArray:
     return np.asarray(points * (body.bounding_radius / farthest))  # samples may miss the farthest one
 
 
-def leverage_at(points: FloatArray, unit_inertia: FloatArray) -> float:
-    """Greatest leverage at ``points`` (N, d) from the centre of mass [length], for the inertia over mass
-    ``unit_inertia`` (k, k) in the same frame [length²]; see `most_leverage` [1]."""
+def rotational_factor_at(points: FloatArray, unit_inertia: FloatArray) -> float:
+    """Greatest rotational factor at ``points`` (N, d) from the centre of mass [length], for the inertia over mass
+    ``unit_inertia`` (k, k) in the same frame [length²]; see `largest_rotational_factor` [1]."""
     if points.shape[1] == 2:
         return float(np.max(np.sum(points**2, axis=1)) / unit_inertia[0, 0])
     across = np.cross(points[:, None, :], np.eye(3)[None])  # rows r × e
