@@ -63,6 +63,7 @@ app = typer.Typer(cls=Commands, add_completion=False, pretty_exceptions_enable=F
 @app.callback(invoke_without_command=True)
 def main(context: typer.Context, version: Version = False) -> None:
     """Rigid bodies that move and collide in a Newtonian fluid."""
+    console.show_all_text()
     if version:
         tell(f"rigidfluid {__version__}")
     elif context.invoked_subcommand is None:

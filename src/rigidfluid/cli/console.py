@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import io
+import os
+import sys
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import typer
 from rich.console import Console
 from rich.text import Text
 
 from rigidfluid.core.run.process import Launch
-from rigidfluid.errors import RigidfluidError, SharedInterrupt
+from rigidfluid.errors import OutputError, RigidfluidError, SharedInterrupt
 
 FOUND_ERRORS = 1
 BAD_INPUT = 2
@@ -75,4 +79,26 @@ def tell_aside(text: str, style: str = "") -> None:
 
 def make_console(stderr: bool = False) -> Console:
     """Console that shows names and values as they are: brackets in them are no markup."""
-    return Console(stderr=stderr, markup=False)
+    return _Output(stderr=stderr, markup=False)
+
+
+def show_all_text() -> None:
+    """Write characters that the streams' encoding lacks by their numbers."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+class _Output(Console):
+    """A console whose stream may be full or closed."""
+
+    def print(self, *objects: Any, **options: Any) -> None:
+        """Print; raises OutputError where the stream refuses, and ends where nobody reads it any more."""
+        try:
+            super().print(*objects, **options)
+        except OSError as error:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), self.file.fileno())  # what is left would fail again at exit
+            if isinstance(error, BrokenPipeError):
+                raise typer.Exit(FOUND_ERRORS) from None
+            remedy = "Results are where they were to be written."
+            raise OutputError("standard output", error.strerror, "a stream that can be written to", remedy) from None

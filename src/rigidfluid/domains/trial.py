@@ -39,7 +39,7 @@ def require_survival(kind: Kind, path: Path, dimension: int) -> None:
 
 @lru_cache(maxsize=64)
 def _outcome(kind: Kind, path: Path, dimension: int, size: int, _changed: int) -> str:
-    """What became of a trial in words, empty where it ended well."""
+    """End of a trial in words, empty where it was a good one."""
     most = _MEMORY + _PER_BYTE * size
     command = [sys.executable, "-m", "rigidfluid.domains.trial", kind, str(path), str(dimension), str(most)]
     try:

@@ -146,6 +146,12 @@ def _taken(out: Path, anew: bool) -> TextIO:
     return mark
 
 
+def has_checkpoint(out: Path) -> bool:
+    """Whether there is a checkpoint in a folder; raises OutputError where no folder can have that name."""
+    with writing(out):
+        return (out / CHECKPOINT).exists()
+
+
 def checkpoint_name(rank: int) -> str:
     """The file of one rank's checkpoint."""
     return CHECKPOINT if rank == ROOT else f"state.{rank}.h5"

@@ -5,7 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from rigidfluid.errors import SceneError
+
 _END_LEVEL = 3
+
+_MOST_TICKS = 1 << 52
+"""Ticks until the end that a number of 53 bits tells apart."""
 
 _ROUNDING = 1e-6
 """Rounding of times, in ticks: a time so near to a tick is there."""
@@ -24,8 +29,13 @@ class Clock:
 
     @classmethod
     def for_steps(cls, step: float, shortest: float, end: float) -> Clock:
-        """The clock whose deepest level is not below ``shortest``."""
-        return cls(step, max(0, math.floor(math.log2(step / shortest) + 1e-9)), end)
+        """The clock whose deepest level is not below ``shortest``; raises SceneError where its ticks are too many to be
+        told apart."""
+        clock = cls(step, max(0, math.floor(math.log2(step / shortest) + 1e-9)), end)
+        if clock.last_tick > _MOST_TICKS:
+            allowed = f"at least {end / _MOST_TICKS:.2g}, a part of {_MOST_TICKS:g} of time.end"
+            raise SceneError("time.shortest", f"{shortest:g}", allowed, "Allow no shorter steps.")
+        return clock
 
     @property
     def last_tick(self) -> int:

@@ -85,12 +85,12 @@ def no_collection() -> Iterator[None]:
 
 @contextmanager
 def remembered_interrupt(ranks: Ranks) -> Iterator[Callable[[], None]]:
-    """Make SIGTERM within a KeyboardInterrupt as Ctrl-C is; give what raises that again where it was lost.
+    """Make SIGTERM and SIGHUP within a KeyboardInterrupt as Ctrl-C is; give what raises that again where it was lost.
 
     Python ignores exceptions in finalisers and in what compiled code calls back, most of all where loops are compiled.
     Several processes are all told, and end together at an exchange; a second Ctrl-C ends the one that gets it at once.
-    SIGTERM is what mpirun makes of Ctrl-C, and what queues send when the time is up. Only the main thread has signals,
-    and other handlers than Python's own are left alone.
+    SIGTERM is what mpirun makes of Ctrl-C, and what queues send when the time is up; SIGHUP is the end of a terminal.
+    Only the main thread has signals, and other handlers than Python's own are left alone, as nohup's that ignores.
     """
     if threading.current_thread() is not threading.main_thread():
         yield ranks.heed_interrupts
@@ -109,7 +109,8 @@ def remembered_interrupt(ranks: Ranks) -> Iterator[Callable[[], None]]:
         if pressed and ranks.size == 1:
             raise KeyboardInterrupt
 
-    heard = [(signal.SIGINT, signal.default_int_handler), (signal.SIGTERM, signal.SIG_DFL)]
+    ended = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
+    heard = [(signal.SIGINT, signal.default_int_handler), *((number, signal.SIG_DFL) for number in ended)]
     numbers = [number for number, own in heard if signal.getsignal(number) is own]
     before = {number: signal.signal(number, remember) for number in numbers}
     try:

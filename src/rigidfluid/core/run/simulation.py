@@ -23,7 +23,7 @@ from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import StepCost, count_cells, joint_coordinates, records
-from rigidfluid.core.output.writer import CHECKPOINT, Writer
+from rigidfluid.core.output.writer import Writer, has_checkpoint
 from rigidfluid.core.run.caller_input import over_time, time_of, twist_row, wrench_row
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.initial_state import initial_state
@@ -331,7 +331,7 @@ class Simulation:
             self.state = initial_state(
                 self.system, self.mesh_updater, self.clock, self.model.time.tolerance is not None
             )
-        if self._ranks.bcast(out is not None and (out / CHECKPOINT).exists()):
+        if self._ranks.bcast(out is not None and has_checkpoint(out)):
             self._rehearse()
         self._writer = None if out is None else self._writer_to(out, None)
         self._record()

@@ -127,7 +127,8 @@ def refuse_out_of_proportion(field: str, number: float) -> None:
     """Raise SceneError for a number that is not zero and beyond `SMALLEST` or `LARGEST`."""
     if number != 0 and not SMALLEST <= abs(number) <= LARGEST:
         allowed = f"0, or a number from {SMALLEST:g} to {LARGEST:g} in size"
-        raise SceneError(field, f"{number:g}", allowed, "Choose units in which it is nearer to 1.")
+        found = f"a number of {len(str(number))} digits" if isinstance(number, int) else f"{number:g}"
+        raise SceneError(field, found, allowed, "Choose units in which it is nearer to 1.")
 
 
 def _told(model: type[BaseModel], complaints: Sequence[ErrorDetails], at: str) -> SceneError:

@@ -164,7 +164,7 @@ def _summary(path: Path) -> dict[str, Any]:
         raise _unreadable(path, "no file") from None
     except OSError as error:
         raise _unreadable(path, error.strerror) from error
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise _unreadable(path, f"no JSON ({error})") from error
     missing = [key for key in NEEDED if key not in summary] if isinstance(summary, dict) else ["table"]
     if missing:
