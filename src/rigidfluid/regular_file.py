@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import stat
 from pathlib import Path
 
 from rigidfluid.errors import SceneError
@@ -10,18 +11,18 @@ MOST_TEXT, MOST_GEOMETRY = 1 << 26, 1 << 31
 """Largest size of a scene or a table, and of a file of geometry [byte]."""
 
 
-def require_regular(path: Path, key: str, most: int) -> None:
-    """Raise SceneError, which names the ``key``, where a path is no regular file or has more than ``most`` bytes."""
+def require_regular(path: Path, key: str, most: int, allowed: str = "a file that is there") -> None:
+    """Raise SceneError, which names the ``key``, where a path is not one that is ``allowed``, no regular file, or has
+    more than ``most`` bytes."""
     try:
-        is_there, is_regular = path.exists(), path.is_file()
-        size = path.stat().st_size if is_regular else 0
-    except OSError as error:
-        raise SceneError(key, f"{path}: {error.strerror}", "a file that can be read", "Check the path.") from None
-    if not is_there:
-        raise SceneError(key, str(path), "a file that is there", "Check the path.")
-    if not is_regular:
+        present = path.stat()
+    except (OSError, ValueError) as error:  # ValueError: a zero byte in the path
+        reason = getattr(error, "strerror", None) or str(error)
+        found = reason if key == str(path) else f"{path}: {reason}"
+        raise SceneError(key, found, allowed, "Check path and permissions.") from None
+    if not stat.S_ISREG(present.st_mode):
         found = f"{path}, which is {'a folder' if path.is_dir() else 'a pipe or a device'}"
         raise SceneError(key, found, "a regular file", "Write its content to a file first.")
-    if size > most:
-        found, allowed = f"{path} of {size / 2**20:.0f} MiB", f"at most {most / 2**20:.0f} MiB"
-        raise SceneError(key, found, allowed, "Check that it is the right file, or make it smaller.")
+    if present.st_size > most:
+        found, limit = f"{path} of {present.st_size / 2**20:.0f} MiB", f"at most {most / 2**20:.0f} MiB"
+        raise SceneError(key, found, limit, "Check that it is the right file, or make it smaller.")

@@ -127,7 +127,7 @@ class Unmoved(Changed):
     """Takes no notice of the bodies' relative motion."""
 
     def given(self, fluid, mesh, step):
-        return fluid, mesh, replace(step, kinematics=replace(step.kinematics, given=np.zeros((2, step.load.shape[1]))))
+        return fluid, mesh, replace(step, kinematics=replace(step.kinematics, relative_twist=np.zeros((2, step.load.shape[1]))))
 
 
 class TurnedRound(Changed):

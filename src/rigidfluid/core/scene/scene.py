@@ -555,7 +555,7 @@ def read_toml(path: Path, kind: str = "scene") -> dict[str, Any]:
 
     The path under a key ``file`` is relative to the file it stands in.
     """
-    require_regular(path, str(path), MOST_TEXT)
+    require_regular(path, str(path), MOST_TEXT, f"a readable {kind} file")
     try:
         return _resolve_files(tomllib.loads(path.read_text(encoding="utf-8")), path.resolve().parent)
     except OSError as error:

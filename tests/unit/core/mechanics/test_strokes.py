@@ -100,7 +100,7 @@ def test_a_period_is_that_of_the_rows_if_none_is_given(tmp_path):
         ({"piecewise": TURNED}, r"it.piecewise.2: found value 5 at the period's end, a jump back to 1"),
         ({"piecewise": SQUARE, "period": 2.0}, r"it.period: found 2.0.*at least 3"),
         ({"piecewise": TURNED, "period": 2.0, "repeat": False}, r"it.period.*none with repeat = false"),
-        ({"piecewise": {"file": "/nowhere.csv"}}, r"it.piecewise.file.*nowhere.csv not found"),
+        ({"piecewise": {"file": "/nowhere.csv"}}, r"it.piecewise.file.*nowhere.csv: No such file"),
     ],
 )
 def test_strokes_that_cannot_be_are_refused(keys, message):

@@ -1,6 +1,8 @@
 """A run that ranks share is that of one process, on all of them; and what goes wrong on one goes wrong on all."""
 
+import errno
 import json
+import os
 from dataclasses import replace
 from functools import cache
 from threading import BrokenBarrierError
@@ -16,7 +18,7 @@ import rigidfluid
 from rigidfluid.core.mesh import mesh_adaptation
 from rigidfluid.core.model.ranks import ALONE
 from rigidfluid.core.output import vtu
-from rigidfluid.core.output.checkpoint import read_checkpoint
+from rigidfluid.core.output.checkpoint import read_checkpoint, stage_checkpoint
 from rigidfluid.core.output.vtu import read_pvd, read_vtu
 from rigidfluid.core.output.writer import earlier_run
 from rigidfluid.core.run.simulation import Simulation
@@ -245,10 +247,16 @@ def test_a_new_run_clears_the_parts_of_more_ranks(tmp_path):
     assert len(list((tmp_path / "fields").iterdir())) == 2
 
 
-def test_a_rank_s_full_disk_is_everyone_s_and_leaves_the_checkpoint_before(tmp_path):
+def test_a_rank_s_full_disk_is_everyone_s_and_leaves_the_checkpoint_before(tmp_path, monkeypatch):
     shared(2, tmp_path, end=0.008)
     before = [(tmp_path / name).read_bytes() for name in ("state.h5", "state.1.h5")]
-    (tmp_path / "state.1.h5.part").symlink_to("/dev/full")
+
+    def stage(path, checkpoint):
+        if path.name == "state.1.h5":
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        stage_checkpoint(path, checkpoint)
+
+    monkeypatch.setattr("rigidfluid.core.output.writer.stage_checkpoint", stage)
     refused_by_all(2, r"state.1.h5: found No space left", tmp_path, resume=True)
     assert before == [(tmp_path / name).read_bytes() for name in ("state.h5", "state.1.h5")]
 

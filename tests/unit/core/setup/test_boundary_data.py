@@ -231,8 +231,8 @@ BAD: dict[str, tuple[list[dict[str, Any]], str, str]] = {
     "unknown key": ([LEFT | {"over_time": {"flie": "a"}}, OPEN], "boundary.0.over_time.flie", "'file'"),
     "no file": (
         [LEFT | {"over_time": {"file": "nowhere.csv"}}, OPEN],
-        "boundary.0.over_time.file: found 'nowhere.csv'",
-        "Correct",
+        "boundary.0.over_time.file: found nowhere.csv: No such file",
+        "Check path",
     ),
     "ramp on a wall": ([{"on": "left", "type": "wall", "ramp": 1.0}], "0.ramp: ramp is valid only with", "out"),
     "expression on a wall": (

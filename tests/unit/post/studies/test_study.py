@@ -154,7 +154,7 @@ def test_seconds_are_by_the_clock_that_is_asked_for(
     history = rigidfluid.run(scene_from_dict(subject._tables(study.settings()[0])))
     assert history.summary["cpu_time"] > 0.0
     history.summary |= {"wall_time": 7.0, "cpu_time": 5.0}
-    monkeypatch.setattr("rigidfluid.post.studies.scene_subject.run", lambda *_, **__: history)
+    monkeypatch.setattr("rigidfluid.post.studies.scene_subject.simulate", lambda *_, **__: history)
     assert subject.run(study.settings()[0], lambda _: None).seconds == history.summary[name]
 
 
@@ -198,7 +198,7 @@ def test_each_backend_is_warmed_up_once(
         started.append((scene.fluid.backend, scene.time.end))
         return rigidfluid.run(scene, **keywords)
 
-    monkeypatch.setattr(scene_subject, "run", noted)
+    monkeypatch.setattr(scene_subject, "simulate", noted)
     results_of(path, tmp_path / "out")
     assert started[:4] == [("dry", 0.002), ("dry", 0.004), ("drier", 0.002), ("drier", 0.004)]
     assert started[4:] == [(name, 0.004) for name in ("dry", "drier")] * 2
