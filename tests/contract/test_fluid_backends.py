@@ -127,7 +127,8 @@ class Unmoved(Changed):
     """Takes no notice of the bodies' relative motion."""
 
     def given(self, fluid, mesh, step):
-        return fluid, mesh, replace(step, kinematics=replace(step.kinematics, relative_twist=np.zeros((2, step.load.shape[1]))))
+        at_rest = np.zeros((2, step.load.shape[1]))
+        return fluid, mesh, replace(step, kinematics=replace(step.kinematics, relative_twist=at_rest))
 
 
 class TurnedRound(Changed):
