@@ -11,9 +11,11 @@ from pydantic import BaseModel
 from rigidfluid.core.model.interfaces import Part, PartOptions, SpatialPart
 from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_key
 from rigidfluid.errors import PluginError, SceneError
-from rigidfluid.registry import Kind, Registry
+from rigidfluid.registry import BODY, Kind, Registry
 
 S = TypeVar("S", bound=SpatialPart)
+
+_OF_SHAPES = f"{BODY.field.rpartition('.')[0]}."
 
 
 class NamesPart(Protocol):
@@ -60,12 +62,12 @@ def build_part(kind: Kind[S], table: NamesPart, at: str, registry: Registry, dim
 
 @contextmanager
 def told_at(at: str, kind: Kind[Any]) -> Iterator[None]:
-    """Name the place ``at`` of a part of a kind in its errors: it does not know its number."""
+    """Name the place ``at`` of a part of a kind in its errors: it does not know its number, nor do shapes within it."""
     own = f"{kind.field.rpartition('.')[0]}."
     try:
         yield
     except (SceneError, PluginError) as error:
         if isinstance(error, PluginError) and not error.subject.startswith(own):
             raise  # about a plug-in, and not a place in the scene
-        subject = f"{at}.{error.subject.removeprefix(own)}"
+        subject = f"{at}.{error.subject.removeprefix(own).removeprefix(_OF_SHAPES)}"
         raise type(error)(subject, error.found, error.allowed, error.remedy) from None
