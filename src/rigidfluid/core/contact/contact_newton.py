@@ -107,7 +107,11 @@ def _along(law: ForceLaw, contacts: Contacts) -> FloatArray:
 def _solved(compliance: Any, slope: FloatArray, right: FloatArray) -> FloatArray:
     """Solution of (1 + slope · compliance) x = right, (m,)."""
     if isinstance(compliance, np.ndarray):
-        return np.asarray(np.linalg.solve(np.eye(len(slope)) + slope[:, None] * compliance, right))
+        try:
+            return np.asarray(np.linalg.solve(np.eye(len(slope)) + slope[:, None] * compliance, right))
+        except np.linalg.LinAlgError:
+            found, allowed = "forces whose change with the gap outweighs all else by rounding", "softer ones"
+            raise StepRejected("the implicit contact step", found, allowed, "Raise the law's epsilon.") from None
     from scipy.sparse.linalg import spsolve
 
     matrix = sparse.eye(len(slope)) + sparse.diags(slope) @ compliance

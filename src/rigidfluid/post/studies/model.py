@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
+from math import prod
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -130,6 +131,10 @@ class StudyFile(_Table):
     error: ErrorTable | None = Field(default=None, description="The error; a kernel has its own")
 
 
+MOST_RUNS = 10_000
+"""Largest number of runs in a study: all of them are held in memory and in one table."""
+
+
 @dataclass(frozen=True)
 class Study:
     """A study file, read: its ``tables``, where it is (``path``), and its ``text`` as it stands there."""
@@ -202,6 +207,10 @@ def _check_lengths(tables: StudyFile) -> None:
     if tables.study.zip and len(set(lengths.values())) > 1:
         found = ", ".join(f"{length} values of {key}" for key, length in lengths.items())
         raise SceneError("vary", found, "lists of one length with zip = true", "Complete the lists, or drop zip.")
+    runs = max(lengths.values()) if tables.study.zip else prod(lengths.values())
+    if runs > MOST_RUNS:
+        remedy = "Shorten the lists, or take them side by side."
+        raise SceneError("vary", f"{runs} runs", f"at most {MOST_RUNS}", remedy)
 
 
 def _check_reference(tables: StudyFile) -> None:

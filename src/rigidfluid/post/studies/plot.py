@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
 
+from rigidfluid.post.reports.curves import escape_dollars
 from rigidfluid.post.reports.style import BLACK, PALETTE, new_figure
 from rigidfluid.post.studies.model import Settings
 from rigidfluid.post.studies.results import Results
@@ -39,7 +40,7 @@ def error_plot(results: Results) -> Figure:
     axes.set_xlim(*_limits(seconds))
     axes.set_ylim(*_limits(errors))
     axes.set_xlabel(f"{results.study.tables.study.clock} [s]")
-    axes.set_ylabel(error_label(results))
+    axes.set_ylabel(escape_dollars(error_label(results)))
     axes.grid(which="minor", alpha=0.12)
     figure.legend(handles=shown, loc="outside right upper")
     return figure
@@ -94,7 +95,7 @@ def _words(results: Results, knob: str, value: object) -> str:
     if value is None:
         return f"without {short}"
     text = short_text(value, results.study.tables.vary[knob])
-    return text if isinstance(value, dict) else f"{short} {text}"
+    return escape_dollars(text if isinstance(value, dict) else f"{short} {text}")
 
 
 def _coordinates(results: Results, keys: list[str]) -> tuple[list[float], list[float]]:

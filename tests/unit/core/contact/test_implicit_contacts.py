@@ -32,6 +32,14 @@ def spring(stiffness, **keys):
     return {"law": "spring-dashpot", "stiffness": stiffness} | keys
 
 
+def test_forces_beyond_all_proportion_are_refused_by_name():
+    """The matrix of one contact is singular by rounding."""
+    law = {"law": "centre", "range": 0.5, "epsilon": 1e-29}
+    scene = implicit(law, ball([0.5, 0.3], [0.0, 0.0]), end=0.1, step=0.01, gravity=[0.0, -1.0])
+    with pytest.raises(StepError, match=r"the implicit contact step at time 0: found forces whose change"):
+        rigidfluid.run(scene)
+
+
 @pytest.mark.parametrize("law", [CentreLaw, NormalLaw, BarrierLaw])
 @pytest.mark.parametrize("end", [1e-3, 0.0099, 0.01 + 1e-8, 0.01, 0.019, 0.5])
 def test_the_discrete_gradient_is_the_mean_force(law, end):

@@ -177,6 +177,11 @@ def test_the_page_needs_no_other_file(write: Write, tmp_path: Path) -> None:
         assert f"<!-- {text} -->" in plot
 
 
+def test_a_label_is_no_formula(write: Write, tmp_path: Path) -> None:
+    _, written = run_study(load_study(write("height of the left disk", r"$\\frac$ of it")), tmp_path / "out")
+    assert r"<!-- error of $\frac$ of it -->" in written[2].read_text(encoding="utf-8")
+
+
 def test_colours_by_one_key_and_markers_by_another(write: Write, tmp_path: Path) -> None:
     path = write('group = "body.0.density"', 'group = ["body.0.density", "time.step"]')
     figure = error_plot(results_of(path, tmp_path / "out"))
@@ -342,6 +347,7 @@ def test_a_terminal_shows_a_bar(write: Write, tmp_path: Path) -> None:
         ('group = "body.0.density"', 'seconds = "cup"', ("study.seconds", "'cup'", "'wall' or 'cpu'")),
         ("reference = 0.5", "", ("error.reference", "nothing", "Add the key 'reference'")),
         ("[vary]", "[vary", ("bounce.toml", "invalid TOML", "Mend the file")),
+        ("[0.002, 0.001, 0.0005]", str([0.001] * 5001), ("vary", "10002 runs", "at most 10000")),
     ],
 )
 def test_wrong_study_files(old: str, new: str, texts: tuple[str, ...], write: Write) -> None:
