@@ -173,9 +173,26 @@ def test_ctrl_c_on_one_process_ends_all_with_a_summary(mpi, mpirun, tmp_path, ba
     succeeded(mpirun(2, *fall(tmp_path, "--resume", **chosen | {"time__end": 0.04})))
 
 
+FULL_DISK = """
+import errno
+from rigidfluid.core.output import writer
+
+stage = writer.stage_checkpoint
+
+def stage_where_there_is_room(path, checkpoint):
+    if path.name == "state.1.h5":
+        raise OSError(errno.ENOSPC, "No space left on device")
+    stage(path, checkpoint)
+
+writer.stage_checkpoint = stage_where_there_is_room
+from rigidfluid.cli import app
+app()
+"""
+
+
 def test_a_full_disk_of_one_process_is_reported_once(mpirun, tmp_path):
     assert mpirun(2, *fall(tmp_path, time__end=0.004)).returncode == 0
-    (tmp_path / "state.1.h5.part").symlink_to("/dev/full")
-    result = mpirun(2, *fall(tmp_path, "--resume", time__end=0.008))
+    _, _, *arguments = fall(tmp_path, "--resume", time__end=0.008)
+    result = mpirun(2, "-c", FULL_DISK, *arguments)
     assert result.returncode != 0
     assert result.stderr.count("state.1.h5: found No space left") == 1
