@@ -11,6 +11,7 @@ from page_tools.kept_run import Run, keep_run
 from page_tools.places import RUNS, SCENES, STUDIES
 from page_tools.record import Recorder, read_record
 from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.named_files import named_files
 from rigidfluid.post.progress import RunsProgress
 from rigidfluid.post.studies import load_study, run_study
 from rigidfluid.post.studies.results import Results
@@ -58,8 +59,8 @@ class Work:
     def scene(self, name: str, overrides: Iterable[str] = ()) -> Scene:
         """A scene of scenes/."""
         scene = rigidfluid.load_scene(self.file(SCENES / name), overrides)
-        for path in _files_of(scene.to_dict()):
-            self.file(path)
+        for path in named_files(scene.to_dict()):
+            self.file(Path(path))
         return scene
 
     def study(self, name: str) -> Results:
@@ -97,13 +98,3 @@ class Work:
     def outdated(self) -> dict[str, list[str]]:
         """By run, the sources that have changed since it was made."""
         return {label: files for label, kept in self._kept.items() if (files := changed(kept))}
-
-
-def _files_of(table: object) -> Iterable[Path]:
-    """The files that a scene's tables name."""
-    if isinstance(table, dict):
-        for key, value in table.items():
-            yield from [Path(value)] if key == "file" and isinstance(value, str) else _files_of(value)
-    elif isinstance(table, list):
-        for value in table:
-            yield from _files_of(value)

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 MOST_BODIES = 20
 """Largest number of bodies or surfaces that a table shows."""
 
+_STYLES = {"serious warning": "red", "warning": "yellow"}
+"""Colours of what a run is told at its end, by its grade."""
+
 
 def print_insertion(figures: InsertionFigures) -> None:
     """Print how well bodies came into a mesh, by surface, and the mesh's worst cells."""
@@ -52,6 +55,8 @@ def print_study(results: Results) -> None:
 
 def print_end(history: History, folder: Path) -> None:
     """Print the figures of a run, complete or not, and where it has written."""
+    from rigidfluid.core.output.verdict import verdict
+
     summary = history.summary
     if summary["reynolds"]:
         solid, fluid = _figure(summary["reynolds_solid_density"]), _figure(summary["reynolds"])
@@ -66,9 +71,8 @@ def print_end(history: History, folder: Path) -> None:
             "yellow",
         )
     _print_energy(summary["energy"])
-    for remark in summary["remarks"]:
-        style = "yellow" if remark["grade"] == "warning" else ""
-        tell(f"{remark['grade']}: {remark['text']}. {remark['remedy']}", style)
+    for grade, text in verdict(summary):
+        tell(f"{grade}: {text}", _STYLES.get(grade, ""))
     if summary["unknowns"]:
         tell(_stage_costs(summary["wall_time_per_stage"], summary["wall_time"]))
     tell(f"wrote to {folder}: {', '.join(Path(file).name for file in summary['files'])}")
@@ -92,7 +96,7 @@ def _stage_costs(seconds: Mapping[str, float], total: float) -> str:
 
 
 def _print_energy(energy: Mapping[str, Any]) -> None:
-    """Print energy created, lost and unaccounted for at the end, and warnings with their causes."""
+    """Print energy created, lost and unaccounted for at the end."""
     from rigidfluid.core.output.energy_account import per_cent
 
     put_in, friction = energy["put_in"], ""
@@ -103,9 +107,6 @@ def _print_energy(energy: Mapping[str, Any]) -> None:
         f"energy: {per_cent(energy['created'])} created, {per_cent(energy['lost'])} lost{friction}{stabilised}, "
         f"{per_cent(energy['unaccounted'])} unaccounted for at the end, of {_figure(put_in)} put in"
     )
-    for warning in energy["warnings"]:
-        grade, style = ("serious warning", "red") if warning["serious"] else ("warning", "yellow")
-        tell(f"{grade}: {warning['text']}. {warning['remedy']}", style)
 
 
 def print_features(report: Report) -> None:

@@ -70,8 +70,9 @@ class Cad(Domain):
 
     def __init__(self, options: CadOptions, dimension: int) -> None:
         super().__init__(options, dimension)
-        require_regular(Path(options.file), "domain.file", MOST_GEOMETRY)
-        require_survival("cad", Path(options.file), dimension)
+        path = Path(options.file)
+        _refuse_other_files(path)
+        require_survival("cad", path, dimension)
         self._shape, self._unit = _read(options, dimension)
         parts = [self._part(number) for number in range(1, len(self._sides) + 1)]
         self._names = surface_names(parts, options.faces)
@@ -157,14 +158,19 @@ def _bounded(plane: Plane, facets: Facets, area: float, centre: FloatArray, slac
     return Plane(plane.point, plane.unit_normal, (lower - slack * across, upper + slack * across))
 
 
+def _refuse_other_files(path: Path) -> None:
+    """Raise SceneError for what is no regular file, or by its name of another kind."""
+    require_regular(path, "domain.file", MOST_GEOMETRY)
+    if path.suffix.lower() not in _SUFFIXES:
+        remedy = "Write it in one of those; a mesh is read by type = 'mesh'."
+        raise SceneError("domain.file", str(path), f"one of {', '.join(_SUFFIXES)}", remedy)
+
+
 def _read(options: CadOptions, dimension: int) -> tuple[Any, float]:
     """The shape with its longest side as meshers take it, and what is 1 in it [length]."""
     from netgen import meshing, occ
 
     path = Path(options.file)
-    if path.suffix.lower() not in _SUFFIXES:
-        remedy = "Write it in one of those; a mesh is read by type = 'mesh'."
-        raise SceneError("domain.file", str(path), f"one of {', '.join(_SUFFIXES)}", remedy)
     try:
         shape = occ.OCCGeometry(str(path), dim=dimension).shape
     except (meshing.NgException, occ.OCCException, RuntimeError) as error:

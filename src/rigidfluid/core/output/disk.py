@@ -13,7 +13,7 @@ def replace_text(path: Path, text: str) -> None:
     """Write a file as a whole: one that cannot be written leaves the one before, or none."""
     staged = path.with_name(path.name + ".part")
     try:
-        staged.write_text(text, encoding="utf-8")
+        staged.write_text(text, encoding="utf-8", newline="\n")
         staged.replace(path)
     except OSError:
         staged.unlink(missing_ok=True)

@@ -18,15 +18,17 @@ from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.scene.earlier import tables_now
 from rigidfluid.core.scene.scene import FluidTable
 from rigidfluid.core.setup.model import Model
-from rigidfluid.core.setup.named_files import file_digests
 from rigidfluid.errors import OutputError
 from rigidfluid.registry import FLUID_BACKEND, Registry
 
 
-def earlier_of(model: Model, out: Path | None, backend: FluidBackend, clock: Clock) -> Checkpoint:
+def earlier_of(
+    model: Model, out: Path | None, backend: FluidBackend, clock: Clock, files: Mapping[str, str]
+) -> Checkpoint:
     """Read the checkpoint to resume; its scene must be this one, but for the end of time and a backend of one format.
 
-    Raises OutputError where it is not, a file that the scene names has changed, or the run is past the clock's end.
+    Raises OutputError where it is not, a file that the scene names has another digest than it has in ``files``, or the
+    run is past the clock's end.
     """
     if out is None:
         raise OutputError("resume", "no folder", "the folder of an earlier run", "Name it with --out.")
@@ -44,16 +46,16 @@ def earlier_of(model: Model, out: Path | None, backend: FluidBackend, clock: Clo
             "a run of the same scene; only time.end may differ, and the backend among those of P2–P1 elements",
             "Give the same scene and the same --set, or run without --resume.",
         )
-    _refuse_changed_files(checkpoint, model)
+    _refuse_changed_files(checkpoint, files)
     if checkpoint.state.tick > clock.last_tick:
         found = f"an end at {clock.end:g}, before the checkpoint's time {clock.time(checkpoint.state.tick):g}"
         raise OutputError(str(out), found, "a later one", "Move time.end; the tables hold what was before it.")
     return checkpoint
 
 
-def _refuse_changed_files(checkpoint: Checkpoint, model: Model) -> None:
-    """Raise OutputError where a file that the scene names is not as it was when the checkpoint was written."""
-    before, now = json.loads(checkpoint.files), file_digests(model.document)
+def _refuse_changed_files(checkpoint: Checkpoint, now: Mapping[str, str]) -> None:
+    """Raise OutputError where a file that the scene names is not as it was when the run of the checkpoint began."""
+    before = json.loads(checkpoint.files)
     changed = sorted(name for name in before.keys() & now.keys() if before[name] != now[name])
     if changed:
         remedy = "Restore it, or run without --resume."

@@ -107,7 +107,8 @@ class Simulation:
         self._ranks = system.backend.ranks
         _refuse_lone_ranks(system.backend, processes)
         self.clock = Clock.for_steps(model.time.step, model.time.shortest, model.time.end)
-        earlier = earlier_of(model, out, system.backend, self.clock) if resume else None
+        self._files = {} if out is None else file_digests(model.document)
+        earlier = earlier_of(model, out, system.backend, self.clock, self._files) if resume else None
         self.watch = Stopwatch()
         self.mesh_updater = updater_of(model.fluid, system, self.clock, self.watch)
         self.stepper = Stepper(system, self.clock, self.mesh_updater, self.watch, model.time.tolerance)
@@ -388,7 +389,7 @@ class Simulation:
             state=self.state,
             memory=memory,
             scene=json.dumps(self.model.document),
-            files=json.dumps(file_digests(self.model.document)),
+            files=json.dumps(self._files),
             times=self._times,
             tables=writer.tables,
             seconds=self.watch.seconds,

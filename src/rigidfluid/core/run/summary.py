@@ -20,6 +20,7 @@ from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.output.energy_account import Table, energy_account, energy_warnings
 from rigidfluid.core.output.records import LEDGER_COLUMNS, count_cells
+from rigidfluid.core.output.verdict import verdict
 from rigidfluid.core.run.cycles import cycles, start_remarks
 from rigidfluid.core.run.process import peak_memory
 from rigidfluid.core.run.remarks import layer_remarks
@@ -165,8 +166,7 @@ def versions() -> dict[str, str]:
 
 def warnings_of(summary: Mapping[str, Any]) -> list[str]:
     """All that a run warns of at its end, each with its remedy."""
-    told = [*summary["energy"]["warnings"], *(each for each in summary["remarks"] if each["grade"] == "warning")]
-    texts = [f"{each['text']}. {each['remedy']}" for each in told]
+    texts = [text for grade, text in verdict(summary) if grade.endswith("warning")]
     if count := summary["failed_remeshes"]:
         latest = summary["latest_failed_remesh"]
         texts.append(f"a new mesh could not be made {count} times; the one before served on. The latest: {latest}")

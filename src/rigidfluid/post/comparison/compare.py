@@ -8,7 +8,7 @@ import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
-from rigidfluid.core.output.disk import writing
+from rigidfluid.core.output.disk import replace_text, writing
 from rigidfluid.core.output.results_folder import Product, take_folder
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.post.comparison.comparison import Comparison
@@ -45,14 +45,14 @@ def compare(
         comparison = Comparison(_command(path, backends, overrides), runs, _pairs(runs))
         with writing(out / TABLE):
             text = json.dumps(comparison.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
-            (out / TABLE).write_text(text + "\n", encoding="utf-8")
+            replace_text(out / TABLE, text + "\n")
         return comparison, [out / TABLE, *write_page(comparison, name, out)]
 
 
 def product_of(backends: Sequence[str]) -> Product:
     """Files of a comparison, beside the runs in folders of their own."""
     names = "|".join(map(re.escape, backends))
-    own = r"comparison\.(json|html)|(differences|body_\d+)\.(png|svg)"
+    own = r"comparison\.(json(\.part)?|html)|(differences|body_\d+)\.(png|svg)"
     return Product("comparison", rf"({names})\.(toml|log)|{own}")
 
 

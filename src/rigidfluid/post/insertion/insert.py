@@ -23,7 +23,7 @@ from rigidfluid.errors import SceneError
 from rigidfluid.post.insertion.figures import Figures, measured
 from rigidfluid.post.insertion.page import write_page
 
-INSERTION = Product("insertion", r"mesh\.(vtu|msh|png)|quality\.png|insertion\.(json|json\.part|html)")
+INSERTION = Product("insertion", r"mesh\.(vtu|msh|png)|quality\.png|insertion\.(json(\.part)?|html)")
 
 _WAYS = {
     "cad": "meshing the domain less the bodies",

@@ -7,6 +7,7 @@ from html import escape
 from typing import Any
 
 from rigidfluid.core.output.energy_account import per_cent
+from rigidfluid.core.output.verdict import verdict
 from rigidfluid.core.scene.scene_text import scene_text
 from rigidfluid.post.reports.coefficients import Figures
 from rigidfluid.post.reports.html import document, grid, table
@@ -47,9 +48,10 @@ def page(
 ) -> str:
     """Compose the HTML page from summary.json, embedded pictures, notes, and coefficients by body."""
     scene = escape(scene_text(summary["scene"]))
+    told = (f"{grade.capitalize()}: {text}" for grade, text in verdict(summary))
     parts = [
         f"<p>Status: {escape(summary['status'])}. Units are those of the scene; in 2D all is per unit depth.</p>",
-        *(f'<p class="note">{escape(note)}</p>' for note in (*_warnings(summary), *notes)),
+        *(f'<p class="note">{escape(note)}</p>' for note in (*told, *notes)),
         table(_figures(summary)),
         *_cycles(summary.get("cycles", {})),
         *_coefficients(coefficients),
@@ -107,15 +109,6 @@ def _coefficients(bodies: Sequence[tuple[str, Figures]]) -> Iterator[str]:
     yield grid(head, rows)
     if len(bodies) > _MOST_BODIES:
         yield f"<p>And of {len(bodies) - _MOST_BODIES} more bodies, in the plot.</p>"
-
-
-def _warnings(summary: Mapping[str, Any]) -> Iterator[str]:
-    """Warnings and remarks of the run, in the words of the command line."""
-    for warning in summary["energy"]["warnings"]:
-        grade = "Serious warning" if warning["serious"] else "Warning"
-        yield f"{grade}: {warning['text']}. {warning['remedy']}"
-    for remark in summary.get("remarks", ()):
-        yield f"{remark['grade'].capitalize()}: {remark['text']}. {remark['remedy']}"
 
 
 def _energy(energy: Mapping[str, float]) -> Iterable[tuple[str, object]]:

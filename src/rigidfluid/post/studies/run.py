@@ -19,7 +19,7 @@ from rigidfluid.post.studies.table import read_rows, write_rows
 
 TABLE = "study.csv"
 
-STUDY = Product("study", r"study\.(csv|part|html|png|svg)")
+STUDY = Product("study", r"study\.(csv(\.part)?|html|png|svg)")
 
 
 def run_study(

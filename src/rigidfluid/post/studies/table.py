@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import csv
+import io
 from collections.abc import Mapping
 from pathlib import Path
 
-from rigidfluid.core.output.disk import writing
+from rigidfluid.core.output.disk import replace_text, writing
 from rigidfluid.errors import OutputError
 from rigidfluid.post.studies.results import Results
 from rigidfluid.post.studies.rows import FAILED, Row, cells
@@ -20,15 +21,14 @@ def write_rows(path: Path, results: Results) -> None:
 
     Raises OutputError if the disk refuses.
     """
-    fresh, knobs = path.with_suffix(".part"), results.study.knobs
-    with writing(path), fresh.open("w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow([*knobs, *_RESULTS])
-        for settings, key in zip(results.plan, results.prints, strict=True):
-            if key in results.rows:
-                table.writerow([*cells(knobs, settings), *_results(results.rows[key], results.errors.get(key)), key])
+    text, knobs = io.StringIO(newline=""), results.study.knobs
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow([*knobs, *_RESULTS])
+    for settings, key in zip(results.plan, results.prints, strict=True):
+        if key in results.rows:
+            table.writerow([*cells(knobs, settings), *_results(results.rows[key], results.errors.get(key)), key])
     with writing(path):
-        fresh.replace(path)
+        replace_text(path, text.getvalue())
 
 
 def _results(row: Row, error: float | None) -> list[object]:

@@ -155,3 +155,14 @@ def test_a_file_of_the_scene_that_has_changed(tmp_path: Path) -> None:
     file.write_text(SOLID.replace("vertex 1 0 0", "vertex 1.01 0 0"))
     with pytest.raises(OutputError, match=r"body.stl: found a file that has changed since the checkpoint"):
         resumed(0.03)
+
+
+def test_a_file_of_the_scene_that_changes_during_the_run(tmp_path: Path) -> None:
+    """What the run has read counts, and not what lies there at its checkpoints."""
+    file, out = tmp_path / "body.stl", tmp_path / "out"
+    file.write_text(SOLID)
+    body = {"type": "stl", "file": str(file), "density": 1.0, "position": [3.0, 3.0, 3.0]}
+    flying = dry_scene({}, body, end=0.02, step=0.01, upper=[6.0] * 3)
+    rigidfluid.run(flying, out, progress=lambda _: file.write_text(SOLID.replace("vertex 1 0 0", "vertex 1.01 0 0")))
+    with pytest.raises(OutputError, match=r"body.stl: found a file that has changed since the checkpoint"):
+        rigidfluid.run(flying, out, resume=True)
