@@ -1,4 +1,4 @@
-"""The public face: all that a program, a plug-in or an example imports, beside `rigidfluid.testing` for its tests.
+"""The public face: all that a program, a plug-in or an example imports, besides `rigidfluid.testing` for its tests.
 
 Scenes and runs, the interfaces of parts and the records that go through them, the marker by which a plug-in offers its
 parts, and the errors. Names elsewhere may move without notice, but for `rigidfluid.taylor_hood`, which backends of

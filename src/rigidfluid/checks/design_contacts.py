@@ -116,10 +116,10 @@ def representative_contacts(system: System) -> Iterator[RepresentativeContacts]:
 def design_contacts(system: System) -> Iterator[DesignContacts]:
     """Representative contacts in which a law with an energy acts, with the loads and speeds expected of them."""
     kind = {body: number for number, alike in enumerate(body_classes(system)) for body in alike}
-    for met in representative_contacts(system):
-        law = acting_together(met.interactions)
+    for design in representative_contacts(system):
+        law = acting_together(design.interactions)
         if law is not None and law.conservative:
-            yield _design(system, law, met, kind)
+            yield _design(system, law, design, kind)
 
 
 def _group_by_interactions(
@@ -144,18 +144,18 @@ def _pressing_share(system: System, bodies: list[int], contacts: Contacts) -> Fl
     return share
 
 
-def _design(system: System, law: ForceLaw, met: RepresentativeContacts, kind: Mapping[int, int]) -> DesignContacts:
-    loads, contacts = system.loads, met.contacts
-    nearest = [one.law.loads.smallest_gap for one in met.interactions if one.law.loads is not None]
+def _design(system: System, law: ForceLaw, design: RepresentativeContacts, kind: Mapping[int, int]) -> DesignContacts:
+    loads, contacts = system.loads, design.contacts
+    nearest = [one.law.loads.smallest_gap for one in design.interactions if one.law.loads is not None]
     share = share_left(contacts, loads, law.range, max(nearest, default=law.range))
     return DesignContacts(
         system=system,
-        interactions=met.interactions,
+        interactions=design.interactions,
         law=law,
-        at_walls=met.at_walls,
+        at_walls=design.at_walls,
         contacts=contacts,
-        weight=met.pressing * held_weight(contacts, loads),
-        stacked_weight=met.pressing * stacked_weight(contacts, loads),
+        weight=design.pressing * held_weight(contacts, loads),
+        stacked_weight=design.pressing * stacked_weight(contacts, loads),
         pair_energy=share * pair_energy(contacts, loads),
         energy=share * impact_energy(contacts, loads),
         speed=closing_speed(contacts, loads),

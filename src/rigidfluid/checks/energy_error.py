@@ -47,43 +47,43 @@ class _Rates(NamedTuple):
         return float(2.0**cut * root**2)
 
 
-def energy_error_findings(met: DesignContacts, fluid: FluidProblem, step: float) -> Iterator[Finding]:
+def energy_error_findings(design: DesignContacts, fluid: FluidProblem, step: float) -> Iterator[Finding]:
     """Estimate the share of an impact's energy that the fluid's ``step`` Δt [time] gets wrong, for contacts of
     frequency ω Δt > 0.5; a warning above 5 %. A fluid without inertia lets nothing rebound, and nothing is estimated.
 
     A run shortens steps in impacts that take much of all energy, and the estimate is that of the shortened step, all
     bodies taken as alike. Two parts are added. In a step the fluid's response to an impulse is a viscous layer of
-    thickness δ = √(ν Δt), which is as heavy as ρ δ S/m beside the mass, added mass included, S being the surface of a
-    ball of equal volume. And the weight acts for one step at a velocity that is the one before or after the impact: a
-    Δt/v, with a = W/m.
+    thickness δ = √(ν Δt), which is as heavy as ρ δ S/m relative to the mass, added mass included, S being the surface
+    of a ball of equal volume. And the weight acts for one step at a velocity that is the one before or after the
+    impact: a Δt/v, with a = W/m.
     """
-    frequency = np.sqrt(met.stiffness() * met.inverse_mass)
-    struck = fluid.inertia & (met.speed > 0.0) & (frequency * step > ACCURATE)
-    layer, fall = _layer_rate(met, fluid), _fall_rate(met)
-    for row in met.worst(np.where(struck, layer * np.sqrt(step) + fall * step, -np.inf)):
+    frequency = np.sqrt(design.stiffness() * design.inverse_mass)
+    struck = fluid.inertia & (design.speed > 0.0) & (frequency * step > ACCURATE)
+    layer, fall = _layer_rate(design, fluid), _fall_rate(design)
+    for row in design.worst(np.where(struck, layer * np.sqrt(step) + fall * step, -np.inf)):
         if struck[row]:
-            yield _finding(met, row, _Rates(float(layer[row]), float(fall[row])), float(frequency[row]), step)
+            yield _finding(design, row, _Rates(float(layer[row]), float(fall[row])), float(frequency[row]), step)
 
 
-def _layer_rate(met: DesignContacts, fluid: FluidProblem) -> FloatArray:
+def _layer_rate(design: DesignContacts, fluid: FluidProblem) -> FloatArray:
     """ρ √ν Σ S/m² over Σ 1/m, both sums over the two bodies (m,) [time^-1/2]."""
-    bodies = met.system.bodies
+    bodies = design.system.bodies
     surface = np.array([body.dimension * body.volume / equal_volume_radius(body) for body in bodies])
-    drawn = pair_values(surface / met.system.loads.mass**2, met.contacts).sum(axis=0)
+    drawn = pair_values(surface / design.system.loads.mass**2, design.contacts).sum(axis=0)
     shear = float(np.sqrt(fluid.density * fluid.material.dynamic_viscosity))
-    return np.asarray(_LAYER_FACTOR * shear * drawn / met.inverse_mass)
+    return np.asarray(_LAYER_FACTOR * shear * drawn / design.inverse_mass)
 
 
-def _fall_rate(met: DesignContacts) -> FloatArray:
+def _fall_rate(design: DesignContacts) -> FloatArray:
     """The larger W/m of the two bodies over the speed of the impact, zero without speed (m,) [1/time]."""
-    loads = met.system.loads
-    fastest = pair_values(loads.weight / loads.mass, met.contacts).max(axis=0)
-    rate: FloatArray = np.divide(fastest, met.speed, out=np.zeros(len(fastest)), where=met.speed > 0.0)
+    loads = design.system.loads
+    fastest = pair_values(loads.weight / loads.mass, design.contacts).max(axis=0)
+    rate: FloatArray = np.divide(fastest, design.speed, out=np.zeros(len(fastest)), where=design.speed > 0.0)
     return rate
 
 
-def _finding(met: DesignContacts, row: int, rates: _Rates, frequency: float, step: float) -> Finding:
-    bodies = int(np.sum(~met.system.prescribed))
+def _finding(design: DesignContacts, row: int, rates: _Rates, frequency: float, step: float) -> Finding:
+    bodies = int(np.sum(~design.system.prescribed))
     cut = rates.cut_step(step, bodies)
     error = min(rates.error(cut), 1.0)
     found = {
@@ -92,13 +92,13 @@ def _finding(met: DesignContacts, row: int, rates: _Rates, frequency: float, ste
         "fall_error": rates.fall * cut,
         "step_at_impact": cut,
         "turn_per_step": frequency * step,
-        "impact_speed": float(met.speed[row]),
+        "impact_speed": float(design.speed[row]),
     }
-    text = f"{' and '.join(met.names(row))}: a step of {figure(step)} does not resolve a contact of "
+    text = f"{' and '.join(design.names(row))}: a step of {figure(step)} does not resolve a contact of "
     text += f"{figure(np.pi / frequency)}; by steps of {figure(cut)} there about "
     text += f"{figure(100.0 * error)} % of the impact's energy may be lost"
     if error <= _ALLOWED:
-        return Finding("note", QUESTION, met.names(row), text, found=found)
+        return Finding("note", QUESTION, design.names(row), text, found=found)
     enough = {"time_step": max(rates.longest_step(bodies), ACCURATE / frequency)}
     remedy = f"Set time.step to {round_down(enough['time_step'])} or less for {figure(100.0 * _ALLOWED)} %."
-    return Finding("warning", QUESTION, met.names(row), text, remedy, found, enough)
+    return Finding("warning", QUESTION, design.names(row), text, remedy, found, enough)

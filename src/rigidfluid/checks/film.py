@@ -29,10 +29,10 @@ def resolved_gap(mesh: MeshTable, radius: FloatArray) -> FloatArray:
 def film_findings(system: System, mesh: MeshTable) -> Iterator[Finding]:
     """Compare the ranges of laws of films with h²/R, the gap where the finest cells h are as wide as the film, √(R
     gap); a warning where the mesh resolves the film that a law counts as well."""
-    for met in representative_contacts(system):
-        for interaction in met.interactions:
-            if interaction.law.film and len(met.contacts):
-                yield from _finding(system, interaction, met.contacts, mesh)
+    for design in representative_contacts(system):
+        for interaction in design.interactions:
+            if interaction.law.film and len(design.contacts):
+                yield from _finding(system, interaction, design.contacts, mesh)
 
 
 def _finding(system: System, interaction: Interaction, contacts: Contacts, mesh: MeshTable) -> Iterator[Finding]:

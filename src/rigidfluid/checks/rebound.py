@@ -1,4 +1,4 @@
-"""Rebound expected of an impact in a film, beside what the law gives back."""
+"""Rebound expected of an impact in a film, compared with what the law gives back."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ come back."""
 _HALVINGS = 50
 
 
-def rebound_findings(met: DesignContacts, film: Film, mesh: MeshTable) -> Iterator[Finding]:
+def rebound_findings(design: DesignContacts, film: Film, mesh: MeshTable) -> Iterator[Finding]:
     """Compare the rebound that a law without losses gives with that expected at the Stokes number of the impact: a
     warning where nothing should come back and something does, else a note. In a fluid without inertia nothing rebounds,
     and there is no finding.
@@ -36,26 +36,26 @@ def rebound_findings(met: DesignContacts, film: Film, mesh: MeshTable) -> Iterat
     Fluid Mech. 433 (2001) 329, doi:10.1017/S0022112001003470; β: Legendre, Daniel and Guiraud, Phys. Fluids 17 (2005)
     097105, doi:10.1063/1.2010527.
     """
-    if met.law.dissipative or not film.inertia:
+    if design.law.dissipative or not film.inertia:
         return
-    system = met.system
-    struck = (met.speed > 0.0) & (met.inverse_mass > 0.0)
-    stokes = np.where(struck, met.speed * stokes_number(met.contacts, film, system.loads), np.inf)
-    curved = with_effective_radii(met.contacts, system.bodies, system.walls, system.pose).effective_radius
+    system = design.system
+    struck = (design.speed > 0.0) & (design.inverse_mass > 0.0)
+    stokes = np.where(struck, design.speed * stokes_number(design.contacts, film, system.loads), np.inf)
+    curved = with_effective_radii(design.contacts, system.bodies, system.walls, system.pose).effective_radius
     resolved = resolved_gap(mesh, curved)  # NaN for facets, whose film is not known
-    back = np.where(np.isnan(resolved), 1.0, _given_back(met, film, stokes))
-    for row in met.worst(-stokes):
+    back = np.where(np.isnan(resolved), 1.0, _given_back(design, film, stokes))
+    for row in design.worst(-stokes):
         if struck[row]:
-            yield _finding(met, film, row, _Rebound(float(stokes[row]), float(resolved[row]), float(back[row])))
+            yield _finding(design, film, row, _Rebound(float(stokes[row]), float(resolved[row]), float(back[row])))
 
 
-def _given_back(met: DesignContacts, film: Film, stokes: FloatArray) -> FloatArray:
+def _given_back(design: DesignContacts, film: Film, stokes: FloatArray) -> FloatArray:
     """Speed at which a body leaves the law's range, over that of its impact (m,), if the resolved film takes its share
     alone [1]."""
-    mass = np.divide(1.0, met.inverse_mass, out=np.ones_like(stokes), where=met.inverse_mass > 0.0)
-    brakes = braking(met.law, met.contacts, mass, film, met.system.loads)
+    mass = np.divide(1.0, design.inverse_mass, out=np.ones_like(stokes), where=design.inverse_mass > 0.0)
+    brakes = braking(design.law, design.contacts, mass, film, design.system.loads)
     left = np.maximum(1.0 - brakes.outside / stokes, 0.0)
-    within = brakes.within(np.maximum(met.speed * left, np.finfo(float).tiny ** 0.25))
+    within = brakes.within(np.maximum(design.speed * left, np.finfo(float).tiny ** 0.25))
     return np.maximum(left - 2.0 * within / stokes, 0.0)
 
 
@@ -73,14 +73,14 @@ class _Rebound(NamedTuple):
         return float(np.exp(-BALLS / self.stokes)) if self.stokes >= REBOUND else 0.0
 
 
-def _finding(met: DesignContacts, film: Film, row: int, rebound: _Rebound) -> Finding:
+def _finding(design: DesignContacts, film: Film, row: int, rebound: _Rebound) -> Finding:
     """Note or warning of the contact ``row``; the remedy is a restitution, or a range before which the film stops the
     body."""
     (stokes, resolved, back), share = rebound, rebound.expected
     seen = f"come back with {figure(share)} of their speed" if share else "do not come back"
-    lossless = next(one for one in met.interactions if one.law.conservative)
+    lossless = next(one for one in design.interactions if one.law.conservative)
     field = lossless.field
-    text = f"{' and '.join(met.names(row))}: the impact's Stokes number is {figure(stokes)}, where balls in liquids "
+    text = f"{' and '.join(design.names(row))}: the impact's Stokes number is {figure(stokes)}, where balls in liquids "
     text += f"{seen}, and the law gives back all that reaches its range; "
     if resolved <= lossless.law.range:
         text += f"before that the film takes its part, which the mesh resolves down to a gap of {figure(resolved)}"
@@ -92,12 +92,12 @@ def _finding(met: DesignContacts, film: Film, row: int, rebound: _Rebound) -> Fi
     if np.isfinite(resolved):
         found["resolved"] = resolved
     if share or back <= COMES_BACK:
-        return Finding("note", QUESTION, met.names(row), text, found=found)
+        return Finding("note", QUESTION, design.names(row), text, found=found)
     enough, remedy = {"restitution_stokes": BALLS}, f"Set {field}.restitution_stokes to {BALLS:g}"
-    thin = _range_that_stops(select(met.contacts, np.array([row])), film, stokes)
+    thin = _range_that_stops(select(design.contacts, np.array([row])), film, stokes)
     if thin is not None and thin > resolved:
         remedy, enough["range"] = f"{remedy}, or {field}.range to {round_down(thin)}", thin
-    return Finding("warning", QUESTION, met.names(row), text, f"{remedy}.", found, enough)
+    return Finding("warning", QUESTION, design.names(row), text, f"{remedy}.", found, enough)
 
 
 def _range_that_stops(contacts: Contacts, film: Film, stokes: float) -> float | None:

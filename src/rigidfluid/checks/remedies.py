@@ -10,22 +10,22 @@ from rigidfluid.core.contact.repulsion import AUTO, Repulsion
 from rigidfluid.core.contact.restitution import without_restitution
 
 
-def strength_remedy(met: DesignContacts, share: float) -> tuple[Mapping[str, float], str]:
+def strength_remedy(design: DesignContacts, share: float) -> tuple[Mapping[str, float], str]:
     """Parameter change for laws that supply the fraction ``share`` < 1 of what is required: ``strength``, the factor on
     the law [1], with the parameter where it is known (a force ∝ 1/ε has ε · share), and the remedy in words."""
     if share <= 0.0:
         return {}, "Take a law that repels up to contact."
     enough = {"strength": 1.0 / share}
-    repelling = [interaction for interaction in met.interactions if interaction.law.conservative]
+    repelling = [interaction for interaction in design.interactions if interaction.law.conservative]
     if len(repelling) > 1:
         fields = " and ".join(interaction.field for interaction in repelling)
         return enough, f"Make the laws of {fields} {round_up(1.0 / share)} times as strong, or widen their ranges."
     law, field = without_restitution(repelling[0].law), repelling[0].field
     if not isinstance(law, Repulsion):
         return enough, f"Make the law {round_up(1.0 / share)} times as strong, or widen its range."
-    given = law.options.epsilon_wall if met.at_walls and law.options.epsilon_wall else law.options.epsilon
+    given = law.options.epsilon_wall if design.at_walls and law.options.epsilon_wall else law.options.epsilon
     if given == AUTO:
         return enough, f"Widen {field}.range, or raise {field}.smallest_gap."
-    key = "epsilon_wall" if met.at_walls else "epsilon"
+    key = "epsilon_wall" if design.at_walls else "epsilon"
     enough[key] = float(given) * share
     return enough, f'Set {field}.{key} to {round_down(enough[key])} or less, or to "auto".'

@@ -106,14 +106,15 @@ def findings(model: Model, system: System, start: Contacts) -> Iterator[Finding]
         if size is not None:
             yield from chain(memory_findings(size), run_time_findings(size, system, time))
         yield from chain(layer_findings(system, mesh), film_findings(system, mesh))
-    for met in design_contacts(system):
-        yield from chain(rest_findings(met), stack_findings(met), impact_findings(met), step_findings(met, time))
+    for design in design_contacts(system):
+        yield from chain(rest_findings(design), stack_findings(design))
+        yield from chain(impact_findings(design), step_findings(design, time))
         if mesh is not None:
-            yield from resolution_findings(met, mesh)
+            yield from resolution_findings(design, mesh)
         if mesh is not None and system.fluid is not None:
-            yield from energy_error_findings(met, system.fluid, time.step)
+            yield from energy_error_findings(design, system.fluid, time.step)
         if mesh is not None and system.loads.film is not None:
-            yield from rebound_findings(met, system.loads.film, mesh)
+            yield from rebound_findings(design, system.loads.film, mesh)
     for interaction in system.interactions:
         yield from start_findings(system, interaction, start)
         yield from chain(parallel_wall_findings(system, interaction), range_findings(system, interaction, mesh))

@@ -82,8 +82,8 @@ def least_gap(contacts: list[DesignContacts], sizes: Sizes) -> float:
     If a law holds the bodies in one of the two alone it is that gap, and if in none, that of the finest cells.
     """
     finest = sizes.cells_per_gap * sizes.smallest
-    rest = _least([(met, narrowest_gaps(met)) for met in contacts])
-    impact = _least([(met, met.turning_gaps()) for met in contacts])
+    rest = _least([(design, narrowest_gaps(design)) for design in contacts])
+    impact = _least([(design, design.turning_gaps()) for design in contacts])
     if rest is None or impact is None:
         return max(rest or impact or 0.0, finest)
     mean = float(rest**_SHARE_OF_REST * min(impact, rest) ** (1.0 - _SHARE_OF_REST))
@@ -92,7 +92,7 @@ def least_gap(contacts: list[DesignContacts], sizes: Sizes) -> float:
 
 def _least(gaps: list[tuple[DesignContacts, FloatArray]]) -> float | None:
     """Least gap at which a law holds a body or ends its impact, None where there is none [length]."""
-    found = [float(gap) for met, mine in gaps for gap in mine if gap > _HELD * met.law.range]
+    found = [float(gap) for design, mine in gaps for gap in mine if gap > _HELD * design.law.range]
     return min(found, default=None)
 
 

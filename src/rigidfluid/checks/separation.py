@@ -32,14 +32,14 @@ def law_findings(system: System) -> Iterator[Finding]:
 
 
 def _lawless_findings(system: System) -> Iterator[Finding]:
-    for met in representative_contacts(system):
-        if not any(interaction.law.conservative for interaction in met.interactions):
-            names = system.surfaces[met.contacts.body_a[0]], system.surfaces[met.contacts.body_b[0]]
-            laws = " and ".join(interaction.field for interaction in met.interactions)
+    for design in representative_contacts(system):
+        if not any(interaction.law.conservative for interaction in design.interactions):
+            names = system.surfaces[design.contacts.body_a[0]], system.surfaces[design.contacts.body_b[0]]
+            laws = " and ".join(interaction.field for interaction in design.interactions)
             text = f"nothing keeps {names[0]} and {names[1]} apart: "
             text += f"{laws} only takes energy out" if laws else "no law acts between them"
             remedy = "Add an [[interaction]] for them; ignore this if it is intended."
-            yield Finding("warning", "law", names, text, remedy, {"pairs": len(met.contacts)})
+            yield Finding("warning", "law", names, text, remedy, {"pairs": len(design.contacts)})
 
 
 def open_face_findings(system: System) -> Iterator[Finding]:

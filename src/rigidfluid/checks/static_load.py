@@ -16,56 +16,56 @@ _STACK = "stack"
 _ROUNDING = 1e-9
 
 
-def rest_findings(met: DesignContacts) -> Iterator[Finding]:
+def rest_findings(design: DesignContacts) -> Iterator[Finding]:
     """Compare the largest force without overlap with the weight, and report the gap at which they balance; an error
     where the law is too weak."""
-    rows = np.flatnonzero(met.weight > 0.0)
+    rows = np.flatnonzero(design.weight > 0.0)
     if len(rows) == 0:
         return
-    most, _ = largest_force(met.law, met.contacts)
-    gaps = rest_gap(met.law, met.contacts, met.weight, _deepest(met))
-    share = np.divide(most, met.weight, out=np.full(len(most), np.inf), where=met.weight > 0.0)
-    for row in met.worst(-share):
-        if met.weight[row] > 0.0:
-            yield _finding(met, row, float(share[row]), float(gaps[row]))
+    most, _ = largest_force(design.law, design.contacts)
+    gaps = rest_gap(design.law, design.contacts, design.weight, _deepest(design))
+    share = np.divide(most, design.weight, out=np.full(len(most), np.inf), where=design.weight > 0.0)
+    for row in design.worst(-share):
+        if design.weight[row] > 0.0:
+            yield _finding(design, row, float(share[row]), float(gaps[row]))
 
 
-def stack_findings(met: DesignContacts) -> Iterator[Finding]:
+def stack_findings(design: DesignContacts) -> Iterator[Finding]:
     """Compare the largest force without overlap with the weight of all that may come to press on the contact, where
     that is more than its own; a warning where the law is too weak."""
-    most, _ = largest_force(met.law, met.contacts)
-    borne = (met.stacked_weight > met.weight * (1.0 + _ROUNDING)) & (most >= met.weight)
-    share = np.divide(most, met.stacked_weight, out=np.full(len(most), np.inf), where=borne)
-    gaps = rest_gap(met.law, met.contacts, met.stacked_weight, _deepest(met))
-    for row in met.worst(-share):
+    most, _ = largest_force(design.law, design.contacts)
+    borne = (design.stacked_weight > design.weight * (1.0 + _ROUNDING)) & (most >= design.weight)
+    share = np.divide(most, design.stacked_weight, out=np.full(len(most), np.inf), where=borne)
+    gaps = rest_gap(design.law, design.contacts, design.stacked_weight, _deepest(design))
+    for row in design.worst(-share):
         if borne[row]:
-            yield _stack_finding(met, row, float(share[row]), float(gaps[row]))
+            yield _stack_finding(design, row, float(share[row]), float(gaps[row]))
 
 
-def _stack_finding(met: DesignContacts, row: int, share: float, gap: float) -> Finding:
-    pressing = float(met.stacked_weight[row])
+def _stack_finding(design: DesignContacts, row: int, share: float, gap: float) -> Finding:
+    pressing = float(design.stacked_weight[row])
     found = {"force_over_stacked_weight": share, "stacked_weight": pressing, "rest_gap": gap}
-    text = f"{' on '.join(met.names(row))} may bear a weight of {figure(pressing)} with the bodies that press on it"
+    text = f"{' on '.join(design.names(row))} may bear a weight of {figure(pressing)} with the bodies that press on it"
     if share >= 1.0:
-        return Finding("note", _STACK, met.names(row), f"{text}, and rests at a gap of {figure(gap)}", found=found)
-    enough, remedy = strength_remedy(met, share)
+        return Finding("note", _STACK, design.names(row), f"{text}, and rests at a gap of {figure(gap)}", found=found)
+    enough, remedy = strength_remedy(design, share)
     text += f", of which the law gives at most {figure(share)}: they may press it through"
-    return Finding("warning", _STACK, met.names(row), text, remedy, found, enough)
+    return Finding("warning", _STACK, design.names(row), text, remedy, found, enough)
 
 
-def _finding(met: DesignContacts, row: int, share: float, gap: float) -> Finding:
-    pair = " on ".join(met.names(row))
-    found = {"force_over_weight": share, "rest_gap": gap, "weight": float(met.weight[row])}
+def _finding(design: DesignContacts, row: int, share: float, gap: float) -> Finding:
+    pair = " on ".join(design.names(row))
+    found = {"force_over_weight": share, "rest_gap": gap, "weight": float(design.weight[row])}
     if share >= 1.0:
         force = "without bound" if np.isinf(share) else f"at most {figure(share)} times its weight"
         text = f"{pair} rests at a gap of {figure(gap)}; the law gives {force}"
-        return Finding("note", QUESTION, met.names(row), text, found=found)
+        return Finding("note", QUESTION, design.names(row), text, found=found)
     end = "nothing stops it" if np.isnan(gap) else f"it would rest only in overlap, at a gap of {figure(gap)}"
     text = f"{pair}: the law gives at most {figure(share)} of its weight; {end}"
-    enough, remedy = strength_remedy(met, share)
-    return Finding("error", QUESTION, met.names(row), text, remedy, found, enough)
+    enough, remedy = strength_remedy(design, share)
+    return Finding("error", QUESTION, design.names(row), text, remedy, found, enough)
 
 
-def _deepest(met: DesignContacts) -> float:
+def _deepest(design: DesignContacts) -> float:
     """Greatest overlap at which a law is evaluated [length]: no body is passed through."""
-    return min(met.law.range, min(body.bounding_radius for body in met.system.bodies))
+    return min(design.law.range, min(body.bounding_radius for body in design.system.bodies))

@@ -21,36 +21,36 @@ ACCURATE = 0.5
 """Greatest frequency times step at which a contact is resolved [1]."""
 
 
-def step_findings(met: DesignContacts, time: TimeTable) -> Iterator[Finding]:
+def step_findings(design: DesignContacts, time: TimeTable) -> Iterator[Finding]:
     """Compare the contact time π √(m/k), k the greatest stiffness that the impact reaches, with the step and its
     substeps.
 
     For fixed substeps h, ω h > 2 is an error and ω h > 0.5 a warning; for one implicit step h, ω h > 0.5 is a warning
     where there are dampers.
     """
-    stiffness = met.stiffness()
-    frequency = np.sqrt(stiffness * met.inverse_mass)
-    for row in met.worst(frequency):
+    stiffness = design.stiffness()
+    frequency = np.sqrt(stiffness * design.inverse_mass)
+    for row in design.worst(frequency):
         if frequency[row] > 0.0:
-            yield _finding(met, row, float(frequency[row]), float(stiffness[row]), time)
+            yield _finding(design, row, float(frequency[row]), float(stiffness[row]), time)
 
 
-def _finding(met: DesignContacts, row: int, frequency: float, stiffness: float, time: TimeTable) -> Finding:
+def _finding(design: DesignContacts, row: int, frequency: float, stiffness: float, time: TimeTable) -> Finding:
     found = {
         "contact_time": np.pi / frequency,
         "stiffness": stiffness,
         "frequency": frequency,
         "contact_time_over_step": np.pi / frequency / time.step,
-        "way_over_range": float(met.speed[row]) * time.step / met.law.range,
+        "way_over_range": float(design.speed[row]) * time.step / design.law.range,
     }
-    pair = " and ".join(met.names(row))
+    pair = " and ".join(design.names(row))
     text = f"{pair}: a contact lasts about {figure(np.pi / frequency)}, and a step {figure(time.step)}"
-    note = Finding("note", QUESTION, met.names(row), text, found=found)
-    if met.system.implicit:
-        return _implicit_finding(note, frequency, time, met.law.dissipative)
-    if met.system.substeps is None:
+    note = Finding("note", QUESTION, design.names(row), text, found=found)
+    if design.system.implicit:
+        return _implicit_finding(note, frequency, time, design.law.dissipative)
+    if design.system.substeps is None:
         return _adapted_finding(note, frequency, time)
-    return _fixed_finding(note, frequency * time.step, met.system.substeps)
+    return _fixed_finding(note, frequency * time.step, design.system.substeps)
 
 
 def _told(note: Finding, text: str, **found: float) -> Finding:

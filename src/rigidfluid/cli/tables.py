@@ -160,7 +160,7 @@ def print_backends(comparison: Comparison) -> None:
 
     for pair in comparison.pairs:
         # without vertical lines it fits into 80 columns
-        title = f"{pair.other} beside {pair.reference}"
+        title = f"{pair.other} compared with {pair.reference}"
         table = Table(*HEADER, title=title, box=SIMPLE_HEAD, padding=0)
         for row in difference_rows(comparison, pair):
             table.add_row(*map(Text, row))

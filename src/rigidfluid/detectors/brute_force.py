@@ -72,7 +72,7 @@ class BruteForceDetector(Detector):
 
     @classmethod
     def exact_for(cls, bodies: Sequence[Body], pieces: Sequence[Piece]) -> str | None:
-        """Reason why any shapes are met, at any cost."""
+        """Reason why any shapes are detected, at any cost."""
         return "the shapes are of any kind, and there is no mesh or no law"
 
     def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:

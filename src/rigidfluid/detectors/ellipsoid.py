@@ -41,7 +41,7 @@ class EllipsoidDetector(Detector):
 
     @classmethod
     def exact_for(cls, bodies: Sequence[Body], pieces: Sequence[Piece]) -> str | None:
-        """Reason why ellipsoids between flat walls, round bumps and whole round hollows are met exactly, or None."""
+        """Reason why detection is exact for ellipsoids between flat walls, round bumps and round hollows, or None."""
         if any(body.semi_axes is None for body in bodies):
             return None
         walls_taken = all(piece.shape.plane or is_whole(piece) for piece in pieces)

@@ -32,7 +32,7 @@ class Features:
 
 def features_of(surface: FacetSurface) -> Features:
     """The corners that are farther out along their mean normal than all that they have an edge to, and the edges that
-    are so of the facets beside them; of a part of a surface those of the whole that lie on the part."""
+    are so of the facets next to them; of a part of a surface those of the whole that lie on the part."""
     found = _features(surface.whole.facets)
     own = np.isin(np.arange(len(surface.facets.points)), surface.facets.vertices)
     corners, edges = own[found.corners], own[found.edges].all(axis=1)

@@ -85,7 +85,7 @@ class FacetDetector(Detector):
 
     @classmethod
     def exact_for(cls, bodies: Sequence[Body], pieces: Sequence[Piece]) -> str | None:
-        """Reason why ellipsoids and bodies of facets between flat, round and facet walls are met exactly, or None."""
+        """Reason why detection is exact for ellipsoids and facets between flat, round and facet walls, or None."""
         if any(body.semi_axes is None and body.facets is None for body in bodies):
             return None
         long = any(body.semi_axes is not None and body.radius is None for body in bodies)
@@ -192,12 +192,12 @@ class _Round(NamedTuple):
     def nearby(self, points: FloatArray, reach: float, spread: float) -> Nearby:
         return nearby(self.shape, points, reach, spread)
 
-    def ball(self, beside: FloatArray) -> _Ball | None:
-        """The wall as a ball, if it bulges into the fluid; ``beside`` (d,) is any point there."""
+    def ball(self, point: FloatArray) -> _Ball | None:
+        """The wall as a ball, if it bulges into the fluid; ``point`` (d,) is any point there."""
         radius = radius_of(self.shape)
         if not 0 < radius < np.inf:
             return None
-        foot, normal = self.shape.closest_point(beside[None]), self.shape.normal(beside[None])
+        foot, normal = self.shape.closest_point(point[None]), self.shape.normal(point[None])
         return _Ball((foot - radius * normal)[0], radius)
 
 
@@ -315,12 +315,12 @@ def _piercing_edges(a: _Facets, b: _Facets) -> Touches:
     if np.any(inside.max(axis=0) < lower) or np.any(inside.min(axis=0) > upper):
         return _no_touches(len(lower))
     points, edges = np.concatenate([facets.points, inside]), a.solid.features.all_edges + len(facets.points)
-    met = crossings(points, edges, b.solid.surface.tree)
-    normal = b.solid.surface.facet_normals[met[:, 1]]
-    ends = points[edges[met[:, 0]]]
-    heights = np.einsum("mej,mj->me", ends - points[facets.vertices[met[:, 1], :1]], normal)
+    crossed = crossings(points, edges, b.solid.surface.tree)
+    normal = b.solid.surface.facet_normals[crossed[:, 1]]
+    ends = points[edges[crossed[:, 0]]]
+    heights = np.einsum("mej,mj->me", ends - points[facets.vertices[crossed[:, 1], :1]], normal)
     deeper = np.argmin(heights, axis=1)
-    rows = np.arange(len(met))
+    rows = np.arange(len(crossed))
     gap, end = np.minimum(heights[rows, deeper], 0.0), ends[rows, deeper]
     return Touches(b.lab(end), b.lab(end - gap[:, None] * normal), normal @ b.rotation.T, gap)
 

@@ -48,7 +48,7 @@ class SphereDetector(Detector):
 
     @classmethod
     def exact_for(cls, bodies: Sequence[Body], pieces: Sequence[Piece]) -> str | None:
-        """Reason why balls alone are met exactly; None if a body is no ball."""
+        """Reason why balls alone are detected exactly; None if a body is no ball."""
         return "all bodies are balls" if all(body.radius is not None for body in bodies) else None
 
     def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:

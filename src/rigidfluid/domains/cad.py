@@ -49,7 +49,7 @@ class CadOptions(PartOptions):
     Planes, cylinders, balls and tori (in 2D lines and circles) are exact; other faces are as fine facets see them.
     """
 
-    file: str = Field(description="The file, sought beside the scene: .step, .stp, .brep, .iges or .igs")
+    file: str = Field(description="The file, sought in the scene's folder: .step, .stp, .brep, .iges or .igs")
     scale: float = Field(default=1.0, gt=0, description="What lengths in the file are multiplied by [1]")
     faces: dict[str, Labels] | None = Field(
         default=None,

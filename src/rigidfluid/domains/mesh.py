@@ -34,7 +34,7 @@ class MeshOptions(PartOptions):
     """
 
     file: str = Field(
-        description="The file, sought beside the scene: .msh, .med, .vtu, .mesh, .meshb, .vol, .vol.gz or .stl"
+        description="The file, sought in the scene's folder: .msh, .med, .vtu, .mesh, .meshb, .vol, .vol.gz or .stl"
     )
     scale: float = Field(default=1.0, gt=0, description="What lengths in the file are multiplied by [1]")
     faces: dict[str, Labels] | None = Field(

@@ -72,18 +72,18 @@ def inner_vertices(facets, cells, cell_start, cell_members):
 @njit(cache=True, nogil=True)
 def facets_beside(facets, marker, start, members):
     """The facet of the same surface beyond each ridge, (F, d), -1 unless it is just one; ridge i is across corner i."""
-    beside = np.full(facets.shape, -1, np.int32)
+    neighbours = np.full(facets.shape, -1, np.int32)
     for facet in range(len(facets)):
         for i in range(facets.shape[1]):
             corner, found = facets[facet, i - 1], 0
             for k in range(start[corner], start[corner + 1]):
                 other = members[k]
                 if other != facet and marker[other] == marker[facet] and _share_ridge(facets, facet, i, other):
-                    beside[facet, i] = other
+                    neighbours[facet, i] = other
                     found += 1
             if found != 1:
-                beside[facet, i] = -1
-    return beside
+                neighbours[facet, i] = -1
+    return neighbours
 
 
 @njit(cache=True, nogil=True)
@@ -96,15 +96,15 @@ def _share_ridge(facets, facet, i, other):
 
 
 @njit(cache=True, nogil=True)
-def is_whole(beside, chosen):
+def is_whole(neighbours, chosen):
     """Whether the facets ``chosen`` are one closed piece, in which each has one other beyond each ridge."""
-    seen = np.zeros(len(beside), np.bool_)
+    seen = np.zeros(len(neighbours), np.bool_)
     waiting = [chosen[0]]
     seen[chosen[0]] = True
     count = 0
     while len(waiting) > 0:
         count += 1
-        for other in beside[waiting.pop()]:
+        for other in neighbours[waiting.pop()]:
             if other < 0:
                 return False
             if not seen[other]:

@@ -26,7 +26,7 @@ def is_convex(points, surfaces, seeds):
             # the corner off the ridge of the facet beyond it: those on the ridge cancel in the sum
             vertex = corners[i]
             for k in range(len(corners)):
-                vertex += surfaces.facets[surfaces.beside[facet, i], k] - corners[k]
+                vertex += surfaces.facets[surfaces.neighbours[facet, i], k] - corners[k]
             if _height(points, vertex, corners[0], normal) > 0.0:
                 return False
     return True

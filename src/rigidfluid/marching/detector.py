@@ -38,7 +38,7 @@ class MarchingDetector(Detector):
     @final
     @classmethod
     def exact_for(cls, bodies: Sequence[Body], pieces: Sequence[Piece]) -> str | None:
-        """Reason why any shapes are met, exactly to the facets of their mesh."""
+        """Reason why any shapes are detected, exactly to the facets of their mesh."""
         return "the shapes are of any kind, and there is a mesh and a law"
 
     @final

@@ -15,7 +15,7 @@ from rigidfluid.core.geometry.arrays import FloatArray
 
 
 class Heap(NamedTuple):
-    """``vertices`` in the heap, their ``keys`` beside them, and the ``place`` (N,) in the heap of each vertex."""
+    """``vertices`` in the heap, their ``keys``, and the ``place`` (N,) in the heap of each vertex."""
 
     vertices: NDArray[np.int32]
     keys: FloatArray

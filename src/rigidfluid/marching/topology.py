@@ -47,14 +47,14 @@ class Adjacency(NamedTuple):
 class Surfaces(NamedTuple):
     """The boundary facets of a mesh: ``facets`` (F, d), the ``marker`` (F,) of each, the facets at each vertex.
 
-    ``across`` (F,) is the vertex of the facet's cell that is not on the facet, ``beside`` (F, d) the facet of the same
-    surface beyond each ridge, or -1 if there is not just one.
+    ``across`` (F,) is the vertex of the facet's cell that is not on the facet, ``neighbours`` (F, d) the facet of the
+    same surface beyond each ridge, or -1 if there is not just one.
     """
 
     facets: Numbers
     marker: Numbers
     across: Numbers
-    beside: Numbers
+    neighbours: Numbers
     start: Numbers
     members: Numbers
 
@@ -122,4 +122,4 @@ class Topology:
         wanted = np.zeros(len(self._facets_by_surface.start) - 1, dtype=bool)
         wanted[[surface for surface in chosen if 0 <= surface < len(wanted)]] = True
         facets = np.concatenate([self.facets_of(surface) for surface in chosen])
-        return Seeds(facets, wanted, len(facets) == 0 or bool(is_whole(self.surfaces.beside, facets)))
+        return Seeds(facets, wanted, len(facets) == 0 or bool(is_whole(self.surfaces.neighbours, facets)))

@@ -16,7 +16,7 @@ def pressure_load(surfaces: Surfaces, node_points: FloatArray, time: float) -> F
     load = np.zeros_like(node_points)
     with surfaces.ranks.raise_on_all():
         for face in surfaces.faces:
-            if not face.condition.holds_across:
+            if not face.condition.prescribes_normal:
                 nodes = face.facet_nodes
                 pressure = face.condition.pressure(time, node_points[nodes.ravel()]).reshape(nodes.shape)
                 np.add.at(load, nodes, pressure[..., None] * face.area_vectors(node_points))

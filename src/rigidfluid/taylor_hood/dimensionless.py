@@ -16,8 +16,8 @@ from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.surfaces import Surfaces
 
 _DIVERGENCE = 1.0 / 32.0
-"""w: what a residual of divergence weighs beside one of momentum. With 1 steps in 3D take a sixth more iterations, and
-bodies move by 1e-9 of their way from where they do now."""
+"""w: what a residual of divergence weighs relative to one of momentum. With 1 steps in 3D take a sixth more iterations,
+and bodies move by 1e-9 of their way from where they do now."""
 
 
 class Dimensionless:

@@ -69,7 +69,7 @@ class LaggedSolver(ABC, Generic[Matrix]):
 
     @final
     def memory(self) -> dict[str, FloatArray]:
-        """State of the solver that the next solution depends on, beside the matrix of the preconditioner."""
+        """State of the solver that the next solution depends on, besides the matrix of the preconditioner."""
         return {"wasted": np.array(float(self._wasted)), "corrections": np.array(self._corrections)}
 
     @final

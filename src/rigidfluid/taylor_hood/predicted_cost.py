@@ -25,8 +25,8 @@ _BLOCKS = {2: Cost(1.0e3, 2.2e-6), 3: Cost(1.8e3, 6.0e-6)}
 """Cost of a block triangle for each unknown."""
 
 _PROCESS = {2: 3.4e8, 3: 3.5e8}
-_BESIDE = {"lu": {2: 1.8e3, 3: 3.7e3}, "schur": {2: 1.1e3, 3: 1.6e3}}
-"""Memory of a process with interpreter, libraries and compiled kernels, and beside for each unknown: matrices, meshes,
+_WITHOUT_FACTORS = {"lu": {2: 1.8e3, 3: 3.7e3}, "schur": {2: 1.1e3, 3: 1.6e3}}
+"""Memory of a process with interpreter, libraries and compiled kernels, and, for each unknown: matrices, meshes,
 states [byte]. Meshers take more while they make a mesh."""
 
 _STEP_SECONDS = {"lu": {2: (4e-3, 1.8e-6), 3: (1e-2, 9e-6)}, "schur": {2: (4e-3, 5e-6), 3: (1e-2, 1.1e-5)}}
@@ -90,7 +90,7 @@ def predicted_run(method: Literal["lu", "schur"], unknowns: float, dimension: in
     sphere took 5.5 GB by LU and 1.3 GB by blocks with 248,705 unknowns, far from contacts.
     """
     cost = (predicted_factors if method == "lu" else predicted_blocks)(unknowns, dimension)
-    beside = _PROCESS[dimension] + _BESIDE[method][dimension] * unknowns
-    memory = beside + (2 if inertia else 1) * cost.bytes
+    without_factors = _PROCESS[dimension] + _WITHOUT_FACTORS[method][dimension] * unknowns
+    memory = without_factors + (2 if inertia else 1) * cost.bytes
     of_step, of_unknown = _STEP_SECONDS[method][dimension]
     return SolverCost(method, unknowns, memory, cost.seconds, of_step + of_unknown * unknowns)

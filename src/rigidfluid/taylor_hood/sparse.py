@@ -176,7 +176,7 @@ class SparseDiscretisation:
         return np.asarray((self._constraint.matrix @ response)[:size].reshape(self.numbering.nodes, -1))
 
     def memory(self) -> dict[str, FloatArray]:
-        """Arrays that the next step depends on beside the state: the matrices of the factors, and the solvers'
+        """Arrays that the next step depends on besides the state: the matrices of the factors, and the solvers'
         memories."""
         found: dict[str, FloatArray] = {}
         for viscous, solver in self._named_solvers():

@@ -232,4 +232,5 @@ def _free_components(face: Face, dimension: int) -> BoolArray:
     condition = face.condition
     if face.axis is None:
         return np.full(dimension, not condition.holds_all)
-    return np.where(np.arange(dimension) == face.axis, not condition.holds_across, not condition.holds_along)
+    normal = np.arange(dimension) == face.axis
+    return np.where(normal, not condition.prescribes_normal, not condition.prescribes_tangential)

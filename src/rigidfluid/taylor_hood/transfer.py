@@ -21,7 +21,7 @@ _LOOSE, _OF_STATE = 1e-3, 2.0
 leave in the state, into which as much of it gets as the scale differs from 1."""
 
 _MOST_SCALED = 1.25
-"""Flow beside potential flow is scaled by at most this, or its inverse, to keep its kinetic energy."""
+"""Rotational flow is scaled by at most this, or its inverse, to keep its kinetic energy."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +51,7 @@ def transfer(flow: Flow, target: Discretisation, tolerance: float, new: Mesh) ->
     moved = dict(fluid)
     moved["points_previous"] = new.geometry - numbering.geometry_of(displacement)
     levels = ("", new.geometry, flow.energies[0]), ("_previous", moved["points_previous"], flow.energies[1])
-    correction = beside = np.zeros((numbering.nodes, numbering.dimension))
+    correction = rotational = np.zeros((numbering.nodes, numbering.dimension))
     for suffix, points, energy in levels:
         moved["pressure" + suffix] = on_nodes.linear(fluid["pressure" + suffix])[: numbering.vertices]
         velocity = on_nodes.quadratic(fluid["velocity" + suffix])
@@ -65,8 +65,8 @@ def transfer(flow: Flow, target: Discretisation, tolerance: float, new: Mesh) ->
         if inertia > 0.0:
             prescribed = target.surfaces.prescribed_part(projected)
             wanted = 2.0 * energy / inertia
-            scale, beside = _rotational_part(projection, projected, prescribed, wanted, tolerance, beside)
-        moved["velocity" + suffix] = projected + (scale - 1.0) * beside
+            scale, rotational = _rotational_part(projection, projected, prescribed, wanted, tolerance, rotational)
+        moved["velocity" + suffix] = projected + (scale - 1.0) * rotational
     return moved
 
 
@@ -127,13 +127,13 @@ def _rotational_part(
     return scale, velocity - potential
 
 
-def _scale(projection: Projection, velocity: FloatArray, beside: FloatArray, square: float) -> float:
-    """s such that ∫ |v + (s - 1) b|² = ``square``, of a ``velocity`` v and what it is ``beside`` potential flow, b.
+def _scale(projection: Projection, velocity: FloatArray, rotational: FloatArray, square: float) -> float:
+    """s such that ∫ |v + (s - 1) b|² = ``square``, of a ``velocity`` v and its ``rotational`` part b.
 
     Both are free of divergence and b is zero on the boundary, so that all combinations are right there. Near a gap the
     new mesh knows another added mass than the squeezed one before, and the projection changes the kinetic energy.
     """
-    a, b = projection.product(beside, beside), projection.product(velocity, beside)
+    a, b = projection.product(rotational, rotational), projection.product(velocity, rotational)
     if a == 0.0:
         return 1.0
     rest = projection.product(velocity, velocity) - 2.0 * b + a

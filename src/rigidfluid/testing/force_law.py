@@ -228,7 +228,7 @@ def _along(law: ForceLaw, contacts: Contacts) -> FloatArray:
 
 
 def _slope(column: Column, contacts: Contacts, law_range: float) -> FloatArray:
-    """d/dgap by a central difference of fourth order, with steps that are short beside the way to contact and range."""
+    """d/dgap by a central difference of fourth order, with steps that are short relative to gap and range."""
     step = 1e-3 * np.minimum(np.abs(contacts.gap), law_range - contacts.gap)
     near = column(_moved(contacts, step)) - column(_moved(contacts, -step))
     wide = column(_moved(contacts, 2 * step)) - column(_moved(contacts, -2 * step))

@@ -15,12 +15,12 @@ def check_contact_table(table: ContactTable, interactions: Sequence[InteractionT
     """Refuse, with SceneError, keys of a law where no law is named, and contradictions."""
     law, range_ = table.law, table.range
     if law is not None and range_ is None:
-        raise SceneError("contact.range", "nothing", "a length above 0 beside `law`", "Add the law's reach.")
+        raise SceneError("contact.range", "nothing", "a length above 0 with `law`", "Add the law's reach.")
     if law is None and range_ is not None:
-        raise SceneError("contact.range", f"{range_} without a law", "`range` beside `law`", "Name the law: `law = …`.")
+        raise SceneError("contact.range", f"{range_} without a law", "`range` with `law`", "Name the law: `law = …`.")
     own = dict.fromkeys(("smallest_gap", "restitution", "restitution_stokes"), law)
     for key, read in {**own, "impact_speed": law or interactions}.items():
         given = getattr(table, key)
         if not read and given is not None:
             remedy = "Name the law: `law = …`."
-            raise SceneError(f"contact.{key}", f"{given} without a law", f"`{key}` beside `law`", remedy)
+            raise SceneError(f"contact.{key}", f"{given} without a law", f"`{key}` with `law`", remedy)

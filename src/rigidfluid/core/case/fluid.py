@@ -26,12 +26,12 @@ def scene_fluid(table: FluidTable, mesh: MeshTable | None, registry: Registry, d
     if not backend.part.wet:
         _refuse_flow(table, backend.part)
         return NoFluid(table.density or 0.0, backend, mesh, _size_fields(mesh, registry, dimension))
-    beside = f"with backend {backend.part.name!r}"
+    condition = f"with backend {backend.part.name!r}"
     for key in ("density", "viscosity"):
         if getattr(table, key) is None:
-            raise SceneError(f"fluid.{key}", "nothing", f"a number above 0 {beside}", f"Add {key!r}.")
+            raise SceneError(f"fluid.{key}", "nothing", f"a number above 0 {condition}", f"Add {key!r}.")
     if mesh is None:
-        raise SceneError("mesh", "nothing", f"a table {beside}", "Add [mesh] with size and size_body.")
+        raise SceneError("mesh", "nothing", f"a table {condition}", "Add [mesh] with size and size_body.")
     initial = table.initial
     assert table.density is not None
     assert table.viscosity is not None

@@ -67,6 +67,6 @@ def _options(definitions: dict[str, Any], entry: Entry) -> dict[str, Any]:
     schema = entry.part.Options.model_json_schema(ref_template=f"#/$defs/{prefix}{{model}}")
     for name, definition in schema.pop("$defs", {}).items():
         definitions[prefix + name] = definition
-    # Its table's own keys stand beside the part's.
+    # Its table's own keys stand next to the part's.
     schema.pop("additionalProperties", None)
     return schema

@@ -81,8 +81,8 @@ class MeshDetection(Detection):
         """Whether a contact is in range that was beyond the detector's reach, or a pair has more than were seen."""
         count = len(self._system.surfaces)
         before, after = (each.body_a * count + each.body_b for each in (seen, found))
-        pairs, met = np.unique(after[found.gap < self._system.law_range], return_counts=True)
-        return bool(np.any(met > np.count_nonzero(before == pairs[:, None], axis=1)))
+        pairs, counts = np.unique(after[found.gap < self._system.law_range], return_counts=True)
+        return bool(np.any(counts > np.count_nonzero(before == pairs[:, None], axis=1)))
 
 
 def detection_by(detector: type[Detector]) -> type[PoseDetection | MeshDetection]:

@@ -75,10 +75,10 @@ class FilmLoss:
         where next to nothing is to come back, e keeps its least value, so that the body stays near, and goes from one
         to the other up to three times REBOUND. With ``dry`` below _MAY_FALL all slower impacts have the least value.
         """
-        met = braking(law, contacts, mass, self.film, self.loads)
+        braked = braking(law, contacts, mass, self.film, self.loads)
 
         def restitution_at(speed: FloatArray) -> FloatArray:
-            both, stokes = met.outside + met.within(speed), met.per_speed * speed + met.outside
+            both, stokes = braked.outside + braked.within(speed), braked.per_speed * speed + braked.outside
             least = self._left_to_law(dry, np.maximum(stokes, self._marginal(dry, both)), both)
             if dry < _MAY_FALL:
                 return least

@@ -56,8 +56,8 @@ def _implicit_or_free(
 
 
 def implicit_coupled(system: System, law: ForceLaw, dynamics: BodyDynamics, near: Contacts, size: float) -> BodyStep:
-    """Advance in a fluid, by several implicit steps in one of the fluid's: an impact is then short beside that, and
-    drag acts before and after it.
+    """Advance in a fluid, by several implicit steps in one of the fluid's: an impact is then short compared with that,
+    and drag acts before and after it.
 
     In a single implicit step an impact would last as long as the fluid's step and work against drag all the while, and
     its impulse would be greater than the reduced mass alone asks for.

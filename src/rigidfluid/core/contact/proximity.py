@@ -57,9 +57,9 @@ def are_separate(system: System, contacts: Contacts) -> BoolArray:
     other = system.assembly[np.minimum(contacts.body_b, count - 1)]
     apart = (contacts.body_b >= count) | (system.assembly[contacts.body_a] != other)
     if len(system.joined):
-        met = np.sort(np.column_stack([contacts.body_a, contacts.body_b]), axis=1)
+        pairs = np.sort(np.column_stack([contacts.body_a, contacts.body_b]), axis=1)
         surfaces = len(system.surfaces)
-        apart &= ~np.isin(met @ [surfaces, 1], system.joined @ [surfaces, 1])
+        apart &= ~np.isin(pairs @ [surfaces, 1], system.joined @ [surfaces, 1])
     return np.asarray(apart)
 
 

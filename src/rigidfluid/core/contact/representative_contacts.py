@@ -81,8 +81,8 @@ def pair_contacts(system: System, bodies: Sequence[int]) -> Contacts:
     pairs = [pair for pair in combinations(bodies, 2) if free(system, pair)]
     first, second = [a for a, _ in pairs], [b for _, b in pairs]
     radius, at_wall = np.array([radius_of(system.bodies[b]) for b in second]), np.zeros(len(pairs), dtype=bool)
-    met = _touching(system, first, second, np.eye(system.dimension)[0], radius, at_wall)
-    return select(met, are_separate(system, met))
+    contacts = _touching(system, first, second, np.eye(system.dimension)[0], radius, at_wall)
+    return select(contacts, are_separate(system, contacts))
 
 
 def contacts_at_gaps(contacts: Contacts, gaps: FloatArray) -> Contacts:

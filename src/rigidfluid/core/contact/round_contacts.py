@@ -19,13 +19,13 @@ def on_round_shapes(contacts: Contacts, walls: Sequence[Wall], pose: Pose) -> Co
     """Contacts, with those of balls with each other and with flat and round walls moved to the line through the
     centres.
 
-    The nearest points between facets lie beside that line: such a force would turn a ball, and its work would not be
+    The nearest points between facets lie off that line: such a force would turn a ball, and its work would not be
     the loss of the gap's energy.
     """
     ball = np.isfinite(contacts.radius_a)
     pairs = np.flatnonzero(ball & ~contacts.at_wall & np.isfinite(contacts.radius_b))
-    beside = np.flatnonzero(ball & contacts.at_wall & ~np.isnan(contacts.radius_b))
-    if len(pairs) + len(beside) == 0:
+    at_wall = np.flatnonzero(ball & contacts.at_wall & ~np.isnan(contacts.radius_b))
+    if len(pairs) + len(at_wall) == 0:
         return contacts
     normal, foot = contacts.normal.copy(), contacts.point_b.copy()
     centre, radius = pose.position[contacts.body_a], contacts.radius_a
@@ -35,7 +35,7 @@ def on_round_shapes(contacts: Contacts, walls: Sequence[Wall], pose: Pose) -> Co
     measured = np.zeros(len(contacts), dtype=bool)
     measured[pairs] = True
     shapes = {wall.surface: wall.shape for wall in walls}
-    for row in beside.tolist():
+    for row in at_wall.tolist():
         shape, at = shapes[int(contacts.body_b[row])], centre[row : row + 1]
         own = shape.normal(at)[0]
         if own @ normal[row] > FACING:

@@ -37,11 +37,11 @@ def _chosen(system: System, interaction: Interaction) -> Iterator[dict[str, Any]
     if system.walls and (at_walls or between) == AUTO:
         moving = free(system, bodies)
         wall = next((wall for wall in system.walls if wall.surface in interaction.surfaces), system.walls[0])
-        met = wall_contacts(system, moving, [wall] * len(moving))
-        yield from _extremes(system, law, law.loads, select(met, interaction.acts_in(met)))
+        contacts = wall_contacts(system, moving, [wall] * len(moving))
+        yield from _extremes(system, law, law.loads, select(contacts, interaction.acts_in(contacts)))
     if between == AUTO:
-        met = pair_contacts(system, bodies)
-        yield from _extremes(system, law, law.loads, select(met, interaction.acts_in(met)))
+        contacts = pair_contacts(system, bodies)
+        yield from _extremes(system, law, law.loads, select(contacts, interaction.acts_in(contacts)))
 
 
 def _extremes(system: System, law: Repulsion, loads: Loads, contacts: Contacts) -> Iterator[dict[str, Any]]:

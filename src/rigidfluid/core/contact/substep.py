@@ -61,7 +61,7 @@ def plan(
     can reach with the energy they have.
 
     ω is neither the present frequency nor does it depend on whether contacts close or open: the estimate of their
-    energy is constant through a collision, and so is h, also where each of many steps plans anew. Substeps of equal
+    energy is constant through a collision, and so is h, also where each of many steps plans again. Substeps of equal
     length keep the energy; each change costs some. h is the step halved a whole number of times, so that other bodies
     seldom change it. A body that is no ball may hit with its fastest point, wherever its nearest one is now.
 

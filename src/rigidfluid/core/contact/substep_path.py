@@ -64,7 +64,7 @@ class SubstepPath:
     def advance(self, sight: Sight) -> BodyStep:
         """Advance by velocity Verlet: half a kick, a drift, half a kick; the second is that of the new pose.
 
-        Substeps are planned for a span of the ``sight`` at a time, and anew while nothing is in range. The sight is
+        Substeps are planned for a span of the ``sight`` at a time, and again while nothing is in range. The sight is
         widened then for bodies that contacts have made faster.
         """
         system, dynamics, size = self.system, self.dynamics, self.size

@@ -1,4 +1,4 @@
-"""Contacts of one pose, detected anew at others."""
+"""Contacts of one pose, detected again at others."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SAME_PLACE = 4.0
 """Largest distance of a contact's points from those carried along, over the way, at which it is the same contact."""
 
 SLIDING = 0.01
-"""Weight of the distance of the farther points beside that of the nearer ones."""
+"""Weight of the distance of the farther points, relative to that of the nearer ones."""
 
 
 class TrackedPairs:
@@ -75,9 +75,9 @@ class TrackedPairs:
         return contacts.body_a * len(self._system.surfaces) + contacts.body_b
 
     def _refuse_others(self, found: Contacts, others: np.ndarray) -> None:
-        met = np.flatnonzero(others & (found.gap < self._system.law_range))
-        if len(met):
-            names = [self._system.surfaces[body[met[0]]] for body in (found.body_a, found.body_b)]
+        entered = np.flatnonzero(others & (found.gap < self._system.law_range))
+        if len(entered):
+            names = [self._system.surfaces[body[entered[0]]] for body in (found.body_a, found.body_b)]
             raise StepRejected(
                 f"body {names[0]}",
                 f"a contact with {names[1]} that was not foreseen at the start of the step",

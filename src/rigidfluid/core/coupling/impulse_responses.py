@@ -75,7 +75,7 @@ def _film_resistance(system: System, contacts: Contacts) -> FloatArray:
     the body alone, (N,) [1].
 
     The resistance of a film is in inverse proportion to its thickness; films thicker than a tenth of the radius matter
-    little beside the body's own.
+    little compared with the body's own.
     """
     reach, carrier = reaches(system)[0], system.motions.carrier
     total = np.ones(len(reach))

@@ -56,12 +56,12 @@ class BoundaryCondition(ABC):
 
     @property
     @abstractmethod
-    def holds_across(self) -> bool:
+    def prescribes_normal(self) -> bool:
         """Whether the velocity across the piece is given, else the traction."""
 
     @property
     @abstractmethod
-    def holds_along(self) -> bool:
+    def prescribes_tangential(self) -> bool:
         """Whether the velocity along the piece is given, else the traction."""
 
     @property
@@ -99,22 +99,22 @@ class BoundaryCondition(ABC):
     @property
     def holds_all(self) -> bool:
         """Whether the whole velocity is given."""
-        return self.holds_across and self.holds_along
+        return self.prescribes_normal and self.prescribes_tangential
 
     @property
     def holds_part(self) -> bool:
         """Whether the velocity is given either across or along the piece, and not both."""
-        return self.holds_across != self.holds_along
+        return self.prescribes_normal != self.prescribes_tangential
 
     @property
     def slips(self) -> bool:
         """Whether fluid goes along it without traction, and not across."""
-        return self.holds_across and not self.holds_along
+        return self.prescribes_normal and not self.prescribes_tangential
 
     @property
     def is_open(self) -> bool:
         """Whether fluid goes in or out by itself; else nothing fixes the constant in the pressure."""
-        return self.passes and not self.holds_across
+        return self.passes and not self.prescribes_normal
 
     @property
     def is_wall(self) -> bool:
@@ -135,8 +135,8 @@ class NoSlip(BoundaryCondition):
     type: ClassVar[str] = "wall"
     sliding: WallValue | None = None
 
-    holds_across = True
-    holds_along = True
+    prescribes_normal = True
+    prescribes_tangential = True
     passes = False
 
     def velocity(self, time: float, points: FloatArray) -> FloatArray:
@@ -156,8 +156,8 @@ class PrescribedVelocity(BoundaryCondition):
     type: ClassVar[str] = "velocity"
     value: Value
 
-    holds_across = True
-    holds_along = True
+    prescribes_normal = True
+    prescribes_tangential = True
     passes = True
 
     @property
@@ -177,8 +177,8 @@ class PrescribedPressure(BoundaryCondition):
     type: ClassVar[str] = "pressure"
     value: Value = no_pressure
 
-    holds_across = False
-    holds_along = True
+    prescribes_normal = False
+    prescribes_tangential = True
     passes = True
 
     @property
@@ -197,8 +197,8 @@ class Slip(BoundaryCondition):
 
     type: ClassVar[str] = "slip"
 
-    holds_across = True
-    holds_along = False
+    prescribes_normal = True
+    prescribes_tangential = False
     passes = False
 
 
@@ -214,8 +214,8 @@ class Periodic(BoundaryCondition):
     image: int | None = None
     drop: Value = no_pressure
 
-    holds_across = False
-    holds_along = False
+    prescribes_normal = False
+    prescribes_tangential = False
     passes = False
 
     @property

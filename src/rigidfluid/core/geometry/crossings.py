@@ -13,7 +13,7 @@ from rigidfluid.core.geometry.facet_tree import build_tree, leaves_beside
 
 _FLAT = 1e-7
 """Volumes of an edge within the plane of a facet are below this, over the cube around both: the single precision of STL
-files puts corners beside their plane."""
+files puts corners off their plane."""
 
 
 def first_crossing(points: FloatArray, facets: IntArray) -> tuple[int, int] | None:
@@ -21,8 +21,8 @@ def first_crossing(points: FloatArray, facets: IntArray) -> tuple[int, int] | No
     corners, d = facets.astype(np.int32), points.shape[1]
     edges = corners if d == 2 else np.concatenate([corners[:, [i, (i + 1) % d]] for i in range(d)])
     points = np.ascontiguousarray(points, dtype=float)
-    met = crossings(points, edges, build_tree(points, corners, np.arange(len(corners), dtype=np.int32)))
-    return (int(met[0, 0]) % len(facets), int(met[0, 1])) if len(met) else None
+    found = crossings(points, edges, build_tree(points, corners, np.arange(len(corners), dtype=np.int32)))
+    return (int(found[0, 0]) % len(facets), int(found[0, 1])) if len(found) else None
 
 
 @njit(cache=True, nogil=True)

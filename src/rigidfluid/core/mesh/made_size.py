@@ -48,8 +48,8 @@ def made_size(points: FloatArray, fluid_domain: FluidDomain, sizes: Sizes) -> tu
         distance = distance_to_body(pose, i, body, points[near])
         second[near] = np.minimum(second[near], np.maximum(first[near], distance))
         first[near] = np.minimum(first[near], distance)
-        beside = edge[shape_key(body)] + _GROWTH_FROM_FACETS * np.maximum(distance, 0.0)
-        kept[near] = np.minimum(kept[near], beside)
+        allowed = edge[shape_key(body)] + _GROWTH_FROM_FACETS * np.maximum(distance, 0.0)
+        kept[near] = np.minimum(kept[near], allowed)
     size = size_between(points, np.maximum(first, 0.0), np.maximum(second, 0.0), fluid_domain, sizes)
     np.minimum(size, kept, out=size)
     for region in sizes.regions:

@@ -24,8 +24,8 @@ def put_on_surfaces(points: FloatArray, shapes: Sequence[Surface], belongs: Bool
     points, rows = points.copy(), np.flatnonzero(belongs.any(axis=1))
     groups, group = np.unique(belongs[rows], axis=0, return_inverse=True)
     for number, mine in enumerate(groups):
-        met, chosen = [shape for shape, on in zip(shapes, mine, strict=True) if on], rows[group == number]
-        points[chosen] = closest_on_all(met, points[chosen])
+        those, chosen = [shape for shape, on in zip(shapes, mine, strict=True) if on], rows[group == number]
+        points[chosen] = closest_on_all(those, points[chosen])
     return points
 
 

@@ -25,7 +25,7 @@ class FollowedContacts(Protocol):
 @dataclass(frozen=True)
 class Sight:
     """Contacts at any pose, by ``contacts_at``: all up to a gap ``reach`` [length], enough for a ``span`` [time] at the
-    speeds that it was made for. Contacts that are not detected anew but move with their bodies have an infinite
+    speeds that it was made for. Contacts that are not detected again but move with their bodies have an infinite
     reach."""
 
     contacts_at: Callable[[Pose], Contacts]

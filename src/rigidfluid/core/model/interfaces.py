@@ -390,7 +390,7 @@ class FluidBackend(Part):
         """Drop every cache, so that the next step depends on the given state alone."""
 
     def memory(self) -> FluidState:
-        """Data on which the next step depends beside the given state, to the last bit: named arrays for a checkpoint.
+        """Data on which the next step depends besides the given state, to the last bit: named arrays for a checkpoint.
 
         A backend that does not say drops its caches.
         """

@@ -19,7 +19,7 @@ _OF_SHAPES = f"{BODY.field.rpartition('.')[0]}."
 
 
 class NamesPart(Protocol):
-    """A table that names a part, and has its keys beside its own."""
+    """A table that names a part, and has its keys besides its own."""
 
     @property
     def type(self) -> str:

@@ -56,7 +56,7 @@ class Checkpoint:
 
 
 def stage_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
-    """Write beside ``path``, so that a run killed in the middle leaves the checkpoint before.
+    """Write next to ``path`` first, so that a run killed in the middle leaves the checkpoint before.
 
     The file is made in memory: on a full disk HDF5's own writing does not fail, it crashes.
     """

@@ -21,7 +21,7 @@ _GMSH = {2: 1, 3: 2, 4: 4}
 
 
 def write_mesh_vtu(path: Path, mesh: Mesh, names: Sequence[str]) -> None:
-    """Write cells and boundary facets; ``surface`` is the number of a facet's surface, -1 of cells; beside them the
+    """Write cells and boundary facets; ``surface`` is the number of a facet's surface, -1 of cells; next to them the
     name of each surface has its number."""
     blocks = [mesh.cells, mesh.facets]
     root = ET.Element(

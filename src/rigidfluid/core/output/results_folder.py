@@ -42,17 +42,17 @@ class Product:
             yield from (file for file in files if re.fullmatch(self.pattern, file.relative_to(out).as_posix()))
 
 
-def take_folder(out: Path, product: Product, *, anew: bool) -> TextIO:
+def take_folder(out: Path, product: Product, *, new: bool) -> TextIO:
     """Lock a folder for a product until what is returned is closed or this process ends, however it ends.
 
     The folder is made if there is none. Raises OutputError where another process is writing there, a link or a device
-    lies where a file is to be written, the disk refuses, or, if the product is made ``anew``, files there are not known
+    lies where a file is to be written, the disk refuses, or, if the product is ``new``, files there are not known
     to be its own.
     """
     with writing(out):
         refuse_links(out, product)
         is_marked = _is_marked(out, product)
-        if anew and not is_marked:
+        if new and not is_marked:
             _refuse_foreign(out, product)
         out.mkdir(parents=True, exist_ok=True)
         return _locked(out, product)

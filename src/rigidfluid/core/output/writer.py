@@ -63,7 +63,7 @@ class Writer:
         out, kept = self.out, {} if resumed is None else resumed.tables
         with self._writing_once(out) as is_mine:
             if is_mine:
-                self._mark = _taken(out, anew=resumed is None)
+                self._mark = _taken(out, new=resumed is None)
                 self._series = [] if resumed is None else _series(out)[: len(resumed.times)]
         for name, names in columns_by_table.items():
             path = table_path(out, name)
@@ -137,10 +137,10 @@ class Writer:
             yield self._ranks.is_root
 
 
-def _taken(out: Path, anew: bool) -> TextIO:
-    """The folder's lock; of an earlier run there only what is not to be written ``anew`` is left."""
-    mark = take_folder(out, RUN, anew=anew)
-    if anew:
+def _taken(out: Path, new: bool) -> TextIO:
+    """The folder's lock; of an earlier run there only what is not to be written by a ``new`` one is left."""
+    mark = take_folder(out, RUN, new=new)
+    if new:
         clear(out, RUN)
     (out / FIELDS).mkdir(exist_ok=True)
     return mark

@@ -63,8 +63,8 @@ class Launch:
                 from mpi4py import MPI
             except ImportError:
                 return
-            met, until = MPI.COMM_WORLD.Ibarrier(), time.monotonic() + _PATIENCE
-            while not met.Test() and time.monotonic() < until:
+            barrier, until = MPI.COMM_WORLD.Ibarrier(), time.monotonic() + _PATIENCE
+            while not barrier.Test() and time.monotonic() < until:
                 time.sleep(0.01)
 
 

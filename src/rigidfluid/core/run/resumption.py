@@ -78,9 +78,9 @@ def _common_keys(fluid: Mapping[str, Any]) -> dict[str, Any]:
 def checkpoint_for(backend: FluidBackend, out: Path) -> Checkpoint:
     """Read this process' checkpoint of the run in a folder; called by all that share the ``backend`` together.
 
-    If another number of processes wrote it, the root puts the mesh and the fluid's state together and cuts them anew;
-    what the backend has kept beside them is of the old parts and left behind. Raises OutputError where there is none,
-    it cannot be read, or the backend cannot cut its state for this number of processes.
+    If another number of processes wrote it, the root puts the mesh and the fluid's state together and partitions them
+    again; what the backend has kept besides is of the old parts and left behind. Raises OutputError where there is
+    none, it cannot be read, or the backend cannot cut its state for this number of processes.
     """
     ranks, written = backend.ranks, 0
     with ranks.raise_on_all():

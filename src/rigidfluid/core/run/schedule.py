@@ -11,7 +11,7 @@ class Schedule:
     """Due at the first accepted step at or after each multiple of ``every`` [time], and at the last step; None: at each
     step.
 
-    ``latest``: when it was met last [time].
+    ``latest``: when it was reached last [time].
     """
 
     def __init__(self, clock: Clock, every: float | None, latest: float = 0.0) -> None:
@@ -24,6 +24,6 @@ class Schedule:
         number = math.floor(self.latest / self._every + 1e-9)
         return tick >= min(self._clock.tick_from((number + 1) * self._every), self._clock.last_tick)
 
-    def met(self, tick: int) -> None:
-        """Record that it was met in the state at this ``tick``."""
+    def reached(self, tick: int) -> None:
+        """Record that it was reached in the state at this ``tick``."""
         self.latest = self._clock.time(tick)

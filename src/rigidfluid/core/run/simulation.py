@@ -73,7 +73,7 @@ class SavedRun:
     counts: Counts
     extremes: Extremes
     rows: dict[str, int]
-    met: tuple[float, ...]
+    reached: tuple[float, ...]
 
 
 class Simulation:
@@ -195,7 +195,7 @@ class Simulation:
         self._record()
         for schedule, observer in self._observers:
             if schedule.due(self.state.tick):
-                schedule.met(self.state.tick)
+                schedule.reached(self.state.tick)
                 observer(self)
         return self.state
 
@@ -284,7 +284,7 @@ class Simulation:
             counts=replace(self.counts),
             extremes=self.extremes,
             rows=self.history.lengths,
-            met=tuple(schedule.latest for schedule, _ in self._observers),
+            reached=tuple(schedule.latest for schedule, _ in self._observers),
         )
 
     def restore(self, saved: SavedRun) -> None:
@@ -305,7 +305,7 @@ class Simulation:
         self.stepper.system = saved.system
         self.stepper.counts = replace(saved.counts)
         self.history.cut(saved.rows)
-        for (schedule, _), latest in zip(self._observers, saved.met, strict=False):
+        for (schedule, _), latest in zip(self._observers, saved.reached, strict=False):
             schedule.latest = latest
 
     def finish(self, status: str) -> None:

@@ -103,7 +103,7 @@ def check_periodic(model: Model) -> None:
         found = f"'periodic' in a domain of type {domain.name!r}, which is made of facets"
         raise SceneError(at, found, "a domain with a CAD shape, as 'box'", "Choose another type.")
     for other in oblique_conditions(model):
-        found = f"'periodic' beside {other.type!r} on {other.name!r}, which does not lie across an axis"
+        found = f"'periodic' together with {other.type!r} on {other.name!r}, which does not lie across an axis"
         raise SceneError(at, found, "'wall' there", "Make it a wall, or do without periodic surfaces.")
 
 

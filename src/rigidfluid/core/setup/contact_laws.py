@@ -142,12 +142,12 @@ def _check_names(model: Model, law: ContactLaw) -> None:
 def _check_shapes(model: Model, law: ContactLaw) -> None:
     """Refuse a law that does not know the shapes of the bodies it acts on."""
     named = [body.shape for body in model.all_bodies if body.name in law.names]
-    met, part = named if len(law.names) == 2 else model.shapes, law.law.part
-    if part.balls_only and any(shape.radius is None for shape in met):
+    shapes, part = named if len(law.names) == 2 else model.shapes, law.law.part
+    if part.balls_only and any(shape.radius is None for shape in shapes):
         remedy = "Choose another law; `rigidfluid plugins` lists what is installed."
         found = f"{part.name!r} with bodies that are no balls"
         raise SceneError(f"{law.field}.law", found, "a law for any shape", remedy)
-    if part.film and any(shape.semi_axes is None for shape in met):
+    if part.film and any(shape.semi_axes is None for shape in shapes):
         remedy = "Keep it to other contacts by `between` or `names`, or choose another law."
         found = f"{part.name!r} with bodies of unknown curvature"
         raise SceneError(f"{law.field}.law", found, "balls, ellipses and ellipsoids", remedy)

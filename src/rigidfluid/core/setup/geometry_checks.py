@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 MOST_FACETS_PER_RADIUS = 10**4
-"""Facets still smaller than that beside a body are a slip of units, and a mesher would never end."""
+"""Facets still smaller than that next to a body are a slip of units, and a mesher would never end."""
 
 
 SMALLEST_BODY = 1e-8

@@ -176,7 +176,7 @@ def fastest_flow(model: Model) -> float:
 
 
 def _lever(body: Body) -> float:
-    """The most that a normal passes beside the centre of mass, √(R² - r²); zero for a ball [length]."""
+    """The most that a normal passes the centre of mass, √(R² - r²); zero for a ball [length]."""
     return float(np.sqrt(max(body.bounding_radius**2 - inscribed_radius(body) ** 2, 0.0)))
 
 

@@ -43,7 +43,7 @@ def _refuse_placement(mechanism: Mechanism, at: str) -> None:
     if d == 3 and np.abs(np.linalg.norm(pose.orientation, axis=1) - 1.0).max() > _ROUNDING:
         raise _plugin_error(at, f"quaternions {pose.orientation.tolist()}", "quaternions of length 1")
     if not mechanism.driven and (rate.velocity.any() or rate.angular_velocity.any()):
-        raise _plugin_error(at, "a rate of what is not driven", "`driven = True` beside `rate`")
+        raise _plugin_error(at, "a rate of what is not driven", "`driven = True` together with `rate`")
 
 
 def _plugin_error(at: str, found: str, allowed: str) -> PluginError:

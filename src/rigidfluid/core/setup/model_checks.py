@@ -102,7 +102,7 @@ def _check_source(model: Model, fluid: Fluid) -> None:
 def _check_mesh(model: Model, mesh: MeshTable) -> None:
     """Refuse a mesh that contradicts itself or what is around it, also one that bodies are but inserted into."""
     if mesh.field and not model.fluid.size_fields:
-        found, allowed = f"{len(mesh.field)} tables, of which nothing is made", "none beside `size_fields` of the fluid"
+        found, allowed = f"{len(mesh.field)} tables, of which nothing is made", "none with `size_fields` of the fluid"
         raise SceneError("mesh.field", found, allowed, "Give the fields as objects there.")
     check_mesh_table(mesh, model.time)
     check_cells(mesh, model.domain)
@@ -123,7 +123,7 @@ def _check_dimension(part: Body | Mechanism | Joint, dimension: int, at: str) ->
 
 def _check_stepping(model: Model) -> None:
     if model.stepping.implicit and model.stepping.substeps is not None:
-        allowed = 'none beside `stepping = "implicit"`'
+        allowed = 'none together with `stepping = "implicit"`'
         raise SceneError("contact.substeps", model.stepping.substeps, allowed, "Remove one of them.")
 
 
@@ -178,7 +178,7 @@ def _check_control(body: RigidBody, at: str) -> None:
     given = [key for key in ("velocity", "angular_velocity") if getattr(body, key) is not None]
     if body.fixed and (given or body.prescribed):
         other = given[0] if given else "prescribed"
-        raise SceneError(f"{at}.fixed", f"true beside {other!r}", "one of them", f"Remove `fixed` or {other!r}.")
+        raise SceneError(f"{at}.fixed", f"true together with {other!r}", "one of them", f"Remove `fixed` or {other!r}.")
     if body.prescribed and given:
         where = f"`{at}.prescribed`"
         statement = "a body with `prescribed` has its velocities there"

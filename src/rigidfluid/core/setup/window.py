@@ -112,7 +112,7 @@ def _check_conditions(model: Model, window: Window) -> None:
     """Conditions at the ends must hold as well wherever the window is."""
     held = model.conditions
     for end in sorted(window.ends):
-        if not held[end].holds_along:
+        if not held[end].prescribes_tangential:
             found = f"{held[end].type!r} on {held[end].name!r}, an end of the window"
             raise SceneError("boundary", found, "'wall', 'velocity' or 'pressure' there", "Change it.")
     behind, ahead = (held[end] for end in window.ends)

@@ -40,7 +40,7 @@ def compare(
     scenes = backend_scenes(path, backends, overrides)
     name = scenes[backends[0]].name
     out = Path("out") / f"{name}_compare" if out is None else Path(out)
-    with take_folder(out, product_of(backends), anew=True):
+    with take_folder(out, product_of(backends), new=True):
         runs = _runs(scenes, out, fresh, progress)
         comparison = Comparison(_command(path, backends, overrides), runs, _pairs(runs))
         with writing(out / TABLE):
@@ -50,7 +50,7 @@ def compare(
 
 
 def product_of(backends: Sequence[str]) -> Product:
-    """Files of a comparison, beside the runs in folders of their own."""
+    """Files of a comparison, next to the runs in folders of their own."""
     names = "|".join(map(re.escape, backends))
     own = r"comparison\.(json(\.part)?|html)|(differences|body_\d+)\.(png|svg)"
     return Product("comparison", rf"({names})\.(toml|log)|{own}")

@@ -10,12 +10,12 @@ from rigidfluid.post.comparison.differences import UNITS, Difference, Pair
 from rigidfluid.post.comparison.runs import Run
 
 COUNTS = ("steps", "rejected_steps", "remeshes", "cells", "unknowns")
-"""Keys of the summaries that are set side by side, beside those of time and memory."""
+"""Keys of the summaries that are set side by side, besides those of time and memory."""
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """The ``runs``, and a pair of the first that is complete with each other one; ``command`` makes it anew."""
+    """The ``runs``, and a pair of the first that is complete with each other one; ``command`` makes it again."""
 
     command: str
     runs: tuple[Run, ...]

@@ -63,7 +63,7 @@ class Difference:
 
 @dataclass(frozen=True)
 class Pair:
-    """One backend beside the reference: differences by quantity at common ``time`` (s,) [time].
+    """One backend compared with the reference: differences by quantity at common ``time`` (s,) [time].
 
     ``interpolated`` (s,) says where the other run has no step, so that its values lie on a line between two steps.
     """

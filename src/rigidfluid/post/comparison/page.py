@@ -74,7 +74,7 @@ def _notes(comparison: Comparison) -> Iterator[str]:
 
 def _differences(comparison: Comparison) -> Iterator[str]:
     for pair in comparison.pairs:
-        yield f"<h2>{escape(pair.other)} beside {escape(pair.reference)}</h2>"
+        yield f"<h2>{escape(pair.other)} compared with {escape(pair.reference)}</h2>"
         yield f"<p>{escape(meaning(pair))}</p>"
         yield grid(HEADER, difference_rows(comparison, pair))
 

@@ -45,7 +45,7 @@ def _parts(registry: Registry, names: Sequence[str]) -> list[type[FluidBackend]]
         raise SceneError(_FIELD, found, "two or more backends", f"Add another {_FIELD}: {others}.")
     dry = [part.name for part in parts if not part.wet]
     if dry and len(dry) < len(parts):
-        found = f"{dry[0]!r}, which has no fluid, beside backends that have one"
+        found = f"{dry[0]!r}, which has no fluid, together with backends that have one"
         raise SceneError(_FIELD, found, "backends that solve the same problem", f"Leave {dry[0]!r} out.")
     return parts
 

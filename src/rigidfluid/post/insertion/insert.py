@@ -55,7 +55,7 @@ def insert(
         sizes = with_fields_at_rest(sizes_of(table, system.domain), model.fluid.size_fields, around)
         way = inserter.chosen(around.bodies, around.domain)
     out = Path("out") / f"{model.name}_mesh" if out is None else Path(out)
-    with take_folder(out, INSERTION, anew=True):
+    with take_folder(out, INSERTION, new=True):
         with _timed(seconds, "insertion"):
             progress(_WAYS[way])
             mesh = inserted_mesh(around, sizes, inserter)

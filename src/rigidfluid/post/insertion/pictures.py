@@ -41,7 +41,7 @@ def plane_picture(mesh: Mesh, system: System) -> Figure:
 
 
 def space_picture(mesh: Mesh, system: System) -> Figure:
-    """The boundary, bodies in full and walls as a veil; beside it the cells that a plane cuts, by their quality."""
+    """The boundary, bodies in full and walls as a veil; next to it the cells that a plane cuts, by their quality."""
     figure = new_figure(12.0, 5.6)
     axes = figure.add_subplot(1, 2, 1, projection="3d")
     bodies = mesh.markers < len(system.bodies)

@@ -133,7 +133,7 @@ def _picture(results: Results, shot: Shot, frame: _Frame, look: Look, scale: Sca
 
 
 def _stage(results: Results, shot: Shot, look: Look, scale: Scale) -> tuple[Figure, Axes, AxesImage]:
-    """A figure with an empty picture, and the colours beside it where there is a fluid."""
+    """A figure with an empty picture, and the colour bar next to it where there is a fluid."""
     size = shot.upper - shot.lower
     width, height = look.longer / 100.0 * size / size.max()
     figure = new_figure(max(width, 1.5) + (1.6 if results.series else 0.6), max(height, 1.0) + 0.8)

@@ -159,7 +159,7 @@ def _reynolds_numbers(results: Results, speed: FloatArray) -> dict[str, FloatArr
 
 
 def _draw_residual(axes: Axes, shares: dict[str, FloatArray], time: FloatArray) -> None:
-    """The residual, the parts of it that can be seen beside it, and what friction of impacts explains."""
+    """The residual, the parts of it that are large enough to be seen, and what friction of impacts explains."""
     axes.plot(time, shares["residual"], color=VERMILLION, label="residual")
     for (name, words), colour in zip(_PARTS.items(), (BLUE, PURPLE, GREEN, ORANGE, SKY), strict=True):
         if np.abs(shares[name]).max() > _VISIBLE * np.abs(shares["residual"]).max():

@@ -1,4 +1,4 @@
-"""Pictures and a page made from a run's folder, beside its results."""
+"""Pictures and a page made from a run's folder, next to its results."""
 
 from __future__ import annotations
 

@@ -185,8 +185,8 @@ def _table(
 def _contact_counts(folder: Path, dimension: int, steps: FloatArray) -> FloatArray:
     """How many rows the table of contacts has for each of the ``steps`` (s,), which rise."""
     path, names = folder / "contacts.csv", columns(dimension)["contacts"]
-    met = [row[names.index("step")] for row in _rows(path, names, may_be_empty=True)]
-    return np.bincount(np.searchsorted(steps, np.array(met, dtype=float)), minlength=len(steps)).astype(float)
+    at_contacts = [row[names.index("step")] for row in _rows(path, names, may_be_empty=True)]
+    return np.bincount(np.searchsorted(steps, np.array(at_contacts, dtype=float)), minlength=len(steps)).astype(float)
 
 
 def _joint_names(system: System) -> tuple[str, ...]:

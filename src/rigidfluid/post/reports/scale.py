@@ -49,7 +49,7 @@ class Scale:
         return np.asarray(self.map(self.norm(values)))[..., :3]
 
     def draw_bar(self, figure: Figure, panels: Sequence[Axes], dimension: int, *, exceeded: bool = False) -> None:
-        """Draw the colours beside the panels; whether the highest are ``exceeded`` is said for speeds alone."""
+        """Draw the colour bar next to the panels; whether the highest are ``exceeded`` is said for speeds alone."""
         extend = "both" if self.lowest < 0.0 else "max" if exceeded else "neither"
         area = "force/area" if dimension == 3 else "force/length"
         unit = {"speed": "length/time", "vorticity": "1/time", "pressure": area}[self.quantity]

@@ -55,7 +55,7 @@ def time_panels(rows: int, height: float = 2.3) -> tuple[Figure, list[Axes]]:
 
 
 def fluid_and_contacts(rows: int) -> tuple[Figure, Any]:
-    """A figure of panels over time (rows, 2), all to one scale: what the fluid does beside what contacts do."""
+    """A figure of panels over time (rows, 2), all to one scale: the fluid's part above that of contacts."""
     figure = new_figure(8.0, 2.3 * rows + 0.6)
     panels = figure.subplots(rows, 2, sharex=True, sharey=True, squeeze=False)
     for column, title in enumerate(("from the fluid", "from contacts")):

@@ -103,7 +103,7 @@ def _coordinates(results: Results, keys: list[str]) -> tuple[list[float], list[f
 
 
 def _draw_front(axes: Axes, results: Results) -> Artist:
-    """Mark the front's runs and write their knobs beside them, but for the group, which the lines tell."""
+    """Mark the front's runs and write their knobs next to them, but for the group, which the lines tell."""
     seconds, errors = _coordinates(results, results.front)
     axes.plot(seconds, errors, drawstyle="steps-post", color=BLACK, alpha=0.15, linewidth=6.0, zorder=0)
     (rings,) = axes.plot(

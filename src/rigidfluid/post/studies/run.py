@@ -31,7 +31,7 @@ def run_study(
     OutputError if the disk refuses or the table cannot be read.
     """
     subject: Subject = SceneSubject(study) if study.scene is not None else KernelSubject(study)
-    with take_folder(out, STUDY, anew=True):
+    with take_folder(out, STUDY, new=True):
         results = _results(study, subject, out, fresh, progress)
         return results, [out / TABLE, *write_report(results, out)]
 

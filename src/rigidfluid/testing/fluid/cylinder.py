@@ -29,7 +29,7 @@ ITERATIONS = 12
 
 
 class CylinderContract(FluidContract):
-    """Drag, lift and pressure difference on a mesh that is coarse beside that of the validation."""
+    """Drag, lift and pressure difference on a mesh that is coarser than that of the validation."""
 
     cylinder_tolerances: ClassVar[tuple[float, float, float]] = (0.005, 0.05, 0.01)
     """Relative, of drag, lift and pressure difference."""

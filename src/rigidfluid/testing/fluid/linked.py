@@ -29,9 +29,9 @@ class LinkedContract(FluidContract):
         flow, step, links = self._linked(dimension)
         advance = flow.backend.advance(flow.fluid, flow.mesh, step)
         assert len(advance.link_force) == len(links.rate)
-        met = np.tensordot(links.rows, components(advance.twist), axes=2) + links.compliance * advance.link_force
+        closing = np.tensordot(links.rows, components(advance.twist), axes=2) + links.compliance * advance.link_force
         scale = float(np.abs(components(advance.twist)).max())
-        np.testing.assert_allclose(met, links.rate, rtol=0, atol=self.link_tolerance * scale)
+        np.testing.assert_allclose(closing, links.rate, rtol=0, atol=self.link_tolerance * scale)
         assert np.abs(links.compliance * advance.link_force).max() > 1e-3 * scale
 
     def test_links_act_as_their_forces_in_the_load_would(self, dimension: int) -> None:

@@ -63,8 +63,8 @@ class MemoryContract(FluidContract):
         flow = self.stirred(dimension, steps=2)
         step, other = self.stirring(flow), self.stir(flow).fluid
         flow.backend.advance(flow.fluid, flow.mesh, step)
-        anew = self.make_backend(problem(dimension, bodies=2))
-        expected = anew.advance(other, flow.mesh, step)
+        fresh = self.make_backend(problem(dimension, bodies=2))
+        expected = fresh.advance(other, flow.mesh, step)
         self._assert_close_figures(flow.backend.advance(other, flow.mesh, step), expected)
 
     def test_a_rejected_step_leaves_no_trace(self, dimension: int) -> None:

@@ -156,7 +156,7 @@ class ResponsesContract(FluidContract):
         for found, free in zip(_responses(fixed, STEP), _responses(flow, STEP), strict=True):
             assert not found[:width].any()
             assert not found[:, :width].any()
-            mass = np.linalg.inv(free)  # of both: beside a prescribed body the other one's own part of it counts
+            mass = np.linalg.inv(free)  # of both: next to a prescribed body the other one's own part of it counts
             self._assert_responses(found[width:, width:], np.linalg.inv(mass[width:, width:]))
 
     def _assert_responses(self, found: FloatArray, expected: FloatArray) -> None:

@@ -23,8 +23,8 @@ DRIFT = np.array([1.0, 0.4])
 class Outflow(BoundaryCondition):
     """An end that holds nothing: fluid leaves it in any direction."""
 
-    holds_across = False
-    holds_along = False
+    prescribes_normal = False
+    prescribes_tangential = False
     passes = True
 
 
@@ -48,7 +48,7 @@ def test_a_condition_of_ones_own_needs_neither_a_name_nor_a_table(end: type[Boun
 
 def test_a_class_must_say_what_it_holds() -> None:
     class Undecided(BoundaryCondition):
-        holds_across = holds_along = True
+        prescribes_normal = prescribes_tangential = True
 
     with pytest.raises(TypeError, match="passes"):
         Undecided(0, "left", None)  # type: ignore[abstract]

@@ -179,7 +179,7 @@ def test_a_study_replaces_nobody_else_s_files(tmp_path: Path, name: str) -> None
 
 @pytest.mark.parametrize("name", ["comparison.json", "comparison.html", "body_3.png", "dry.toml", "scikit-fem.log"])
 def test_a_comparison_replaces_nobody_else_s_files(tmp_path: Path, name: str) -> None:
-    refuse_a_file(tmp_path, name, lambda out: take_folder(out, product_of(["dry", "scikit-fem"]), anew=True))
+    refuse_a_file(tmp_path, name, lambda out: take_folder(out, product_of(["dry", "scikit-fem"]), new=True))
 
 
 def test_an_empty_name_is_not_the_working_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

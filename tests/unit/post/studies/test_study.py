@@ -365,7 +365,7 @@ def test_missing_study_file(tmp_path: Path) -> None:
 
 
 def test_a_table_that_is_none(write: Write, tmp_path: Path) -> None:
-    take_folder(tmp_path, FILES, anew=True).close()
+    take_folder(tmp_path, FILES, new=True).close()
     (tmp_path / "study.csv").write_text("identity,status\n1234,complete\n")
     with pytest.raises(OutputError, match=r"study\.csv.*Use --fresh"):
         run_study(load_study(write()), tmp_path)
