@@ -13,7 +13,7 @@ WITH_PLUGINS := tests/unit/core/run/test_resumption.py tests/unit/core/run/test_
 WITH_DOLFINX := tests/contract/test_fluid_backends.py tests/unit/backends/test_dolfinx.py \
 	tests/unit/benchmarks/test_backends_benchmark.py tests/unit/benchmarks/test_parallel_benchmark.py tests/mpi
 
-# Each package that rigidfluid itself names is called somewhere here: some four minutes of two cores.
+# Each package that rigidfluid itself names is called somewhere here.
 WITH_LOWEST := $(addprefix tests/unit/,test_cli.py test_registry.py core/case core/scene core/output core/mesh/test_remesh.py \
 	domains/test_cad.py domains/test_mesh_domain.py marching/test_marching.py taylor_hood/test_factorization.py post/reports) \
 	tests/contract/test_bodies.py tests/contract/test_force_laws.py
