@@ -6,13 +6,19 @@ BIN := .venv/bin
 PLUGINS := $(wildcard plugins/*)
 # Two processes have half of the tests each; the first that is done takes half of what the other has left. A test that
 # hangs ends its process, and the other goes on and names it.
-PYTEST := $(BIN)/pytest -n 2 --dist worksteal --timeout-method thread
+PARALLEL := -n 2 --dist worksteal --timeout-method thread
+PYTEST := $(BIN)/pytest $(PARALLEL)
 # Files in which tests need plug-ins, or PyVista as another reader of fields, and files in which they need DOLFINx.
 WITH_PLUGINS := tests/unit/core/run/test_resumption.py tests/unit/core/run/test_shared_run.py tests/unit/benchmarks
 WITH_DOLFINX := tests/contract/test_fluid_backends.py tests/unit/backends/test_dolfinx.py \
 	tests/unit/benchmarks/test_backends_benchmark.py tests/unit/benchmarks/test_parallel_benchmark.py tests/mpi
 
-.PHONY: run test test-long test-plugins test-dolfinx install lint validate stale bench clean
+# Each package that rigidfluid itself names is called somewhere here.
+WITH_LOWEST := $(addprefix tests/unit/,test_cli.py test_registry.py core/case core/scene core/output core/mesh/test_remesh.py \
+	domains/test_cad.py domains/test_mesh_domain.py marching/test_marching.py taylor_hood/test_factorization.py post/reports) \
+	tests/contract/test_bodies.py tests/contract/test_force_laws.py
+
+.PHONY: run test test-lowest test-long test-plugins test-dolfinx install lint validate stale bench lock clean
 
 run: install
 	$(BIN)/rigidfluid run scenes/falling_disk.toml
@@ -21,6 +27,10 @@ install: .venv/.installed
 
 test: .venv/.installed-test
 	$(PYTEST) --timeout 300 --durations 40
+
+# Numba keeps one version's code of a file, so this one keeps its own elsewhere.
+test-lowest: .venv-lowest/.installed
+	NUMBA_CACHE_DIR=$(CURDIR)/.venv-lowest/numba .venv-lowest/bin/pytest $(PARALLEL) --timeout 300 $(WITH_LOWEST)
 
 test-long: .venv/.installed-test
 	$(PYTEST) --timeout 1800 --durations 40 -m 'long and not validation'
@@ -52,13 +62,19 @@ bench: .venv/.installed-bench .venv/.installed-plugins
 	$(BIN)/python benchmarks/work_precision.py --page docs/validation/work_precision.md
 	$(BIN)/python benchmarks/dry_spheres.py
 
+# The versions that are installed here, for those who want the same; run the tests with them first.
+lock: .venv/.installed-dev .venv/.installed-bench .venv/.installed-movies .venv/.installed-plugins
+	$(BIN)/python -m pip check
+	$(BIN)/python -m pip freeze --exclude-editable > requirements.lock
+	$(BIN)/python tools/third_party.py
+
 clean:
-	rm -rf .venv .dolfinx
+	rm -rf .venv .venv-lowest .dolfinx
 
 # A stamp, since a venv that could not be finished leaves its python behind.
-.venv/.created:
+%/.created:
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "rigidfluid needs Python 3.11 or newer")'
-	$(PYTHON) -m venv .venv
+	$(PYTHON) -m venv $*
 	touch $@
 
 .venv/.installed: pyproject.toml | .venv/.created
@@ -66,9 +82,17 @@ clean:
 	touch $@
 
 .venv/.installed-plugins: $(PLUGINS:%=%/pyproject.toml) | .venv/.installed-test
-	$(BIN)/python -m pip install --quiet --editable . 'pyvista>=0.44' $(PLUGINS:%=--editable %)
+	$(BIN)/python -m pip install --quiet --editable '.[vtk]' $(PLUGINS:%=--editable %)
 	touch $@
 
 .venv/.installed-%: pyproject.toml | .venv/.created
 	$(BIN)/python -m pip install --quiet --editable '.[$*]'
+	touch $@
+
+# pip takes the newest of all; uv can take the lowest that these projects name.
+.venv-lowest/.installed: pyproject.toml $(PLUGINS:%=%/pyproject.toml) | .venv-lowest/.created
+	.venv-lowest/bin/python -m pip install --quiet uv
+	.venv-lowest/bin/uv pip install --quiet --python .venv-lowest --resolution lowest-direct \
+		--editable '.[test,movies]' $(PLUGINS:%=--editable %)
+	.venv-lowest/bin/python tools/lowest.py
 	touch $@

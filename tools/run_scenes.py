@@ -17,6 +17,8 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
+from rigidfluid.core.run.summary import warnings_of
+
 ROOT = Path(__file__).parents[1]
 
 
@@ -40,9 +42,8 @@ def read_summary(folder: Path) -> dict[str, Any]:
 
 
 def warnings(summary: dict[str, Any]) -> list[str]:
-    """Texts of all that a run warned of at its end."""
-    remarks = [remark["text"] for remark in summary.get("remarks", []) if remark["grade"] == "warning"]
-    return remarks + [warning["text"] for warning in summary.get("energy", {}).get("warnings", [])]
+    """Texts of all that a run warned of at its end; none of one that came to no end."""
+    return warnings_of(summary) if "energy" in summary else []
 
 
 def line(name: str, summary: dict[str, Any]) -> str:
@@ -51,7 +52,7 @@ def line(name: str, summary: dict[str, Any]) -> str:
     shown = [key for key in ("created", "lost", "unaccounted") if key in energy]
     shares = ", ".join(f"{key} {100.0 * energy[key]:.2g} %" for key in shown)
     cost = f"{summary.get('steps', 0)} steps, {summary.get('cpu_time', 0.0):.0f} s of CPU time"
-    return f"{name}: {summary.get('status')}; {cost}; {shares}; {'; '.join(warnings(summary)) or 'no warning'}"
+    return f"{name}: {summary.get('status')}; {cost}; {shares}; {' '.join(warnings(summary)) or 'no warning'}"
 
 
 def main() -> int:

@@ -35,7 +35,7 @@ def read_drives(tables: Sequence[JointTable]) -> tuple[JointTable, ...]:
 def _built(table: JointTable, registry: Registry, dimension: int, at: str) -> Joint:
     part = registry.get(JOINT, table.type, f"{at}.type")
     options = _options(table, part, registry, at)
-    with told_at(at, JOINT):
+    with told_at(at):
         return part(options, dimension)
 
 

@@ -30,6 +30,6 @@ def placed_mechanisms(
 
 def _built(table: MechanismTable, registry: Registry, dimension: int, at: str) -> Mechanism:
     mechanism = build_part(MECHANISM, table, at, registry, dimension)
-    with told_at(at, MECHANISM):
+    with told_at(at):
         mechanism.components  # noqa: B018  it may be there that it refuses its options
     return mechanism

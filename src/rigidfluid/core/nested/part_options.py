@@ -11,11 +11,12 @@ from pydantic import BaseModel
 from rigidfluid.core.model.interfaces import Part, PartOptions, SpatialPart
 from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_key
 from rigidfluid.errors import PluginError, SceneError
-from rigidfluid.registry import BODY, Kind, Registry
+from rigidfluid.registry import KINDS, Kind, Registry
 
 S = TypeVar("S", bound=SpatialPart)
 
-_OF_SHAPES = f"{BODY.field.rpartition('.')[0]}."
+_PLACELESS = tuple(f"{kind.field.rpartition('.')[0]}." for kind in KINDS)
+"""First words of a key in errors of parts, which do not know the place of their table."""
 
 
 class NamesPart(Protocol):
@@ -56,18 +57,18 @@ def build_part(kind: Kind[S], table: NamesPart, at: str, registry: Registry, dim
     options = dict(table.model_extra or {})
     refuse_unread(options, [part], type(table).model_fields, at)
     read = read_table(part.Options, options, at)
-    with told_at(at, kind):
+    with told_at(at):
         return part(read, dimension)
 
 
 @contextmanager
-def told_at(at: str, kind: Kind[Any]) -> Iterator[None]:
-    """Name the place ``at`` of a part of a kind in its errors: it does not know its number, nor do shapes within it."""
-    own = f"{kind.field.rpartition('.')[0]}."
+def told_at(at: str) -> Iterator[None]:
+    """Name the place ``at`` of a part in its errors and in those of parts within it, which do not know their place."""
     try:
         yield
     except (SceneError, PluginError) as error:
-        if isinstance(error, PluginError) and not error.subject.startswith(own):
+        placeless = next(filter(error.subject.startswith, _PLACELESS), "")
+        if isinstance(error, PluginError) and not placeless:
             raise  # about a plug-in, and not a place in the scene
-        subject = f"{at}.{error.subject.removeprefix(own).removeprefix(_OF_SHAPES)}"
+        subject = f"{at}.{error.subject.removeprefix(placeless)}"
         raise type(error)(subject, error.found, error.allowed, error.remedy) from None

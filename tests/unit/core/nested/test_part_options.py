@@ -9,8 +9,6 @@ from scenes import dry_tables
 
 from rigidfluid.api import (
     BODY,
-    JOINT,
-    MECHANISM,
     Body,
     NestedBodyTable,
     PluginError,
@@ -22,6 +20,7 @@ from rigidfluid.api import (
 )
 from rigidfluid.core.nested.part_options import build_part, told_at
 from rigidfluid.core.scene.scene import BodyTable
+from rigidfluid.registry import KINDS
 
 BALL = {"type": "sphere", "radius": 0.1, "position": [0.5, 0.5]}
 POINTS = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1], [0.0, 0.0]]
@@ -70,9 +69,20 @@ def test_tables_of_a_scene_and_within_those_of_parts_give_the_same_shape() -> No
 
 
 def test_an_error_of_a_plug_in_keeps_its_subject_and_one_of_a_table_within_gets_its_place() -> None:
-    with pytest.raises(PluginError, match=r"^plug-in x: "), told_at("mechanism.0", MECHANISM):
+    with pytest.raises(PluginError, match=r"^plug-in x: "), told_at("mechanism.0"):
         raise PluginError("plug-in x", "none", "one", "Mend it.")
-    with pytest.raises(PluginError, match=r"^mechanism\.0\.component\.1\.type: "), told_at("mechanism.0", MECHANISM):
+    with pytest.raises(PluginError, match=r"^mechanism\.0\.component\.1\.type: "), told_at("mechanism.0"):
         raise PluginError("mechanism.component.1.type", "none", "one", "Mend it.")
-    with pytest.raises(SceneError, match=r"^joint\.3\.axis: "), told_at("joint.3", JOINT):
+    with pytest.raises(SceneError, match=r"^joint\.3\.axis: "), told_at("joint.3"):
         raise SceneError("joint.axis", "none", "one", "Mend it.")
+
+
+@pytest.mark.parametrize("within", [kind.field.rpartition(".")[0] for kind in KINDS])
+def test_a_part_within_another_is_told_at_the_place_of_the_whole(within: str) -> None:
+    with pytest.raises(SceneError, match=r"^mechanism\.2\.axis: "), told_at("mechanism.2"):
+        raise SceneError(f"{within}.axis", "none", "one", "Mend it.")
+
+
+def test_a_key_with_the_name_of_a_part_is_kept() -> None:
+    with pytest.raises(SceneError, match=r"^joint\.3\.body\.1: "), told_at("joint.3"):
+        raise SceneError("joint.body.1", "none", "one", "Mend it.")
