@@ -94,7 +94,9 @@ PAIRS = {
 def account(scene: Scene) -> tuple[float, list[str]]:
     """The most energy that was created, lost or taken by stabilisation, over what is told of each, and what is said."""
     energy = rigidfluid.run(scene).summary["energy"]
-    worst = max(energy["created"] / NOTICEABLE, energy["lost"] / NOTICEABLE, energy["grad_div"] / STABILISED)
+    worst = max(
+        *(energy[f"largest_{flow}"] / NOTICEABLE for flow in ("creation", "loss")), energy["grad_div"] / STABILISED
+    )
     return worst, [warning["text"] for warning in energy["warnings"]]
 
 
