@@ -126,3 +126,24 @@ def test_the_largest_growth_is_that_of_all_pairs():
             (balance[j] - balance[i], i, j) for i, j in combinations(range(40), 2) if clock[j] - clock[i] <= stretch
         ]
         assert largest_growth(balance, clock, stretch) == max(pairs)
+
+
+def test_what_is_at_hand():
+    """Thrown up with 1 by a spring that holds 2, to where gravity can do 3 more than at the start."""
+    thrown = table(
+        kinetic=[1, 0, 0, 1, 1, 1],
+        contact=[2, 2, 0, 0, 0, 0],
+        gravity=[0, -1, -3, -1, 1, 3],
+        dissipation=[0, 0, 0, 1, 3, 5],
+    )
+    assert np.abs(thrown["residual"]).max() == 0.0
+    assert energy_account(thrown).at_hand == 1.0 + 2.0 + 3.0
+    assert energy_account(table(kinetic=np.ones(6), contact=np.full(6, 3.0))).at_hand == 1.0 + 3.0
+    attracted = table(kinetic=[0, 1, 2, 3, 4, 5], contact=[-1, -2, -3, -4, -5, -6])
+    assert energy_account(attracted).at_hand == 5.0
+
+
+@pytest.mark.parametrize("taker", ["dissipation", "grad_div_loss", "contact_loss"])
+def test_a_step_may_take_more_than_is_there(taker):
+    energy = table(3, kinetic=np.ones(3), control=[0, 4, 6], **{taker: [0, 4, 6]})
+    assert energy_account(energy).at_hand == 4.0
