@@ -106,10 +106,10 @@ def _changes(values: FloatArray, floor: float) -> FloatArray:
 
 
 def _dissipated(energy: Table) -> FloatArray:
-    """What viscosity, stabilisation and dampers had taken by each state (s,)."""
-    return np.maximum.accumulate(sum(energy[name] for name in _DISSIPATED))
+    """Energy taken by viscosity, stabilisation and dampers until each state (s,)."""
+    return np.maximum.accumulate(np.sum([energy[name] for name in _DISSIPATED], axis=0))
 
 
 def round_off(energy: Table) -> float:
     """Round-off of the residual [energy]: changes in a step by no more are left out of sums."""
-    return _ROUND_OFF * float(sum(np.abs(energy[name]) for name in _BALANCE).max())
+    return _ROUND_OFF * float(np.sum(np.abs([energy[name] for name in _BALANCE]), axis=0).max())
