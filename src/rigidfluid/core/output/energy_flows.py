@@ -17,9 +17,9 @@ Table = Mapping[str, NDArray[Any]]
 PARTS = ("residual_steps", "residual_contacts", "residual_remeshing", "residual_mesh", "residual_start")
 """Columns whose sum is the residual."""
 
-MOST_TURNOVERS = 100.0
-"""A run is judged by no shorter stretches than those in which this part of all that it dissipates is dissipated. A
-creeping flow would be judged by less than a step: there what is at hand is dissipated at once."""
+SHORTEST = 10.0
+"""Least length of a stretch, in steps that dissipate as much as any. A creeping flow would be judged by less than a
+step: it dissipates at once what is there, and remembers no error."""
 
 _DISSIPATED = ("dissipation", "grad_div_loss", "contact_loss")
 _BALANCE = ("kinetic", "contact", "gravity", "boundary", "control", "body_force", *_DISSIPATED, "transfer_loss")
@@ -65,14 +65,15 @@ def energy_at_hand(energy: Table) -> float:
     """The most energy that was there at once [energy]: kinetic, in contacts and springs, attraction counted from its
     lowest, and what gravity can still do; as far as the balance accounts for it.
 
-    It is no less than what one step dissipates, nor than a hundredth of what the run does.
+    It is no less than ten times what the step that dissipates most takes, or in a run of few steps all that is
+    dissipated.
     """
     above_lowest = energy["contact"] - min(energy["contact"].min(), 0.0)
     stored = energy["kinetic"] + above_lowest + energy["gravity"].max() - energy["gravity"]
     accounted = stored + energy["residual"] + energy["transfer_loss"]
     dissipated = _dissipated(energy)
-    there = float(np.minimum(stored, accounted).max())
-    found = max(there, float(dissipated[-1]) / MOST_TURNOVERS, float(np.diff(dissipated).max(initial=0.0)))
+    steps = SHORTEST * float(np.diff(dissipated).max(initial=0.0))
+    found = max(float(np.minimum(stored, accounted).max()), min(steps, float(dissipated[-1])))
     return found if found > round_off(energy) else float(np.maximum(stored, accounted).max())
 
 
