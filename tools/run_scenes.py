@@ -47,10 +47,10 @@ def warnings(summary: dict[str, Any]) -> list[str]:
 
 
 def line(name: str, summary: dict[str, Any]) -> str:
-    """How a scene ended, its cost, the shares of the energy put in, and its warnings."""
+    """How a scene ended, its cost, the shares of the energy at hand, and its warnings."""
     energy = summary.get("energy", {})
-    shown = [key for key in ("created", "lost", "unaccounted") if key in energy]
-    shares = ", ".join(f"{key} {100.0 * energy[key]:.2g} %" for key in shown)
+    shown = [key for key in ("largest_creation", "largest_loss", "summed_creation", "summed_loss") if key in energy]
+    shares = ", ".join(f"{key.replace('_', ' ')} {100.0 * energy[key]:.2g} %" for key in shown)
     cost = f"{summary.get('steps', 0)} steps, {summary.get('cpu_time', 0.0):.0f} s of CPU time"
     return f"{name}: {summary.get('status')}; {cost}; {shares}; {' '.join(warnings(summary)) or 'no warning'}"
 

@@ -96,16 +96,20 @@ def _stage_costs(seconds: Mapping[str, float], total: float) -> str:
 
 
 def _print_energy(energy: Mapping[str, Any]) -> None:
-    """Print energy created, lost and unaccounted for at the end."""
+    """Print energy created and lost, both net in their worst stretch and summed, and unaccounted for at the end."""
     from rigidfluid.core.output.energy_account import per_cent
 
     put_in, friction = energy["put_in"], ""
-    if energy["path_friction"] and put_in:
+    if energy["path_friction"] and put_in > 0.0:
         friction = f", friction of impacts {per_cent(energy['path_friction'] / put_in)} at most"
     stabilised = f", {per_cent(energy['grad_div'])} by stabilisation" if energy["grad_div"] else ""
+    created, lost, all_created, all_lost = (
+        per_cent(energy[f"{which}_{flow}"]) for which in ("largest", "summed") for flow in ("creation", "loss")
+    )
     tell(
-        f"energy: {per_cent(energy['created'])} created, {per_cent(energy['lost'])} lost{friction}{stabilised}, "
-        f"{per_cent(energy['unaccounted'])} unaccounted for at the end, of {_figure(put_in)} put in"
+        f"energy: {created} created, {lost} lost (summed {all_created}, {all_lost}) of {_figure(energy['at_hand'])} at "
+        f"hand; {per_cent(energy['unaccounted'])} unaccounted for at the end{friction}{stabilised}, of "
+        f"{_figure(put_in)} put in"
     )
 
 

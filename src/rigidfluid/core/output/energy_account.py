@@ -4,17 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import NamedTuple
 
 from rigidfluid.core.geometry.arrays import FloatArray
-
-Table = Mapping[str, NDArray[Any]]
+from rigidfluid.core.output.energy_flows import (
+    PARTS,
+    Flow,
+    Table,
+    creation_and_loss,
+    energy_at_hand,
+    lost_by_cause,
+    round_off,
+)
 
 NOTICEABLE, SERIOUS = 0.01, 0.05
-"""Shares of the energy put in from which on energy created, lost or unaccounted for is worth a warning, and a serious
+"""Shares of the energy at hand from which on energy created, lost or unaccounted for is worth a warning, and a serious
 one."""
 
 STABILISED = 0.05
@@ -53,28 +57,37 @@ _CAUSES = (
         "Shorten time.step, or let what is prescribed begin slowly, by a ramp.",
     ),
 )
-PARTS = tuple(cause.part for cause in _CAUSES)
-"""Columns whose sum is the residual."""
 
 
 @dataclass(frozen=True, slots=True)
 class EnergyAccount:
-    """``put_in`` [energy], and shares of it, zero where nothing was put in.
+    """``at_hand``, ``put_in`` and ``round_off`` [energy], and what came from nowhere or vanished.
+
+    ``at_hand``, ``creation`` and ``loss`` [energy]: as in `energy_at_hand` and `creation_and_loss`.
 
     Put in: what was stored at the start, the most that gravity had worked by any time, and the most that faces,
     prescribed bodies and the force on the fluid had. The error at a time is the residual and what re-meshing took.
-    ``created``: the lowest that it was after the first step, less that step's own, its sign changed. ``lost``: the
-    highest, without what friction between the fluid's solutions explains. ``unaccounted``: the residual at the end.
-    ``path_friction``: that friction, until the end. ``grad_div``: what stabilisation took until the end, no part of
-    the others.
+    Shares of what was put in, zero where that is nothing: ``created``, the lowest that it was after the first step,
+    less that step's own, its sign changed; ``lost``, the highest, without what friction between the fluid's solutions
+    explains. Shares of what was put in, or at hand if that is more: ``unaccounted``, the residual at the end;
+    ``path_friction``, that friction until the end; ``grad_div``, what stabilisation took until the end, no part of the
+    others.
     """
 
+    at_hand: float
+    creation: Flow
+    loss: Flow
+    round_off: float
     put_in: float
     created: float
     lost: float
     unaccounted: float
     path_friction: float
     grad_div: float
+
+    def share(self, amount: float) -> float:
+        """An ``amount`` over what was at hand, zero where nothing was."""
+        return _share(amount, self.at_hand)
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,40 +102,38 @@ class EnergyWarning:
 
 def energy_account(energy: Table) -> EnergyAccount:
     """The account of a table of energies by column, (s,) each [energy], a row per state from the start on."""
-    put_in = _put_in(energy)
+    put_in, at_hand = _put_in(energy), energy_at_hand(energy)
     lost, friction = energy["residual"] + energy["transfer_loss"], energy["path_friction"]
-
-    def share(value: float) -> float:
-        return value / put_in if put_in > 0.0 else 0.0
-
+    whole = max(put_in, at_hand)
     return EnergyAccount(
+        at_hand,
+        *creation_and_loss(energy, at_hand),
+        round_off(energy),
         put_in,
-        share(float(_excess(-lost).max())),
-        share(float(_excess(lost - friction).max())),
-        share(float(energy["residual"][-1])),
-        share(float(friction[-1])),
-        share(float(energy["grad_div_loss"][-1])),
+        _share(float(_excess(-lost).max()), put_in),
+        _share(float(_excess(lost - friction).max()), put_in),
+        _share(float(energy["residual"][-1]), whole),
+        _share(float(friction[-1]), whole),
+        _share(float(energy["grad_div_loss"][-1]), whole),
     )
 
 
 def energy_warnings(energy: Table) -> list[EnergyWarning]:
     """Warn of energy created, lost, or unaccounted for at the end and neither of these, and of energy that
-    stabilisation took, if noticeable; ``energy``: the table by column (s,) [energy]."""
-    account, sums = energy_account(energy), _lost_by_cause(energy)
-    lost = energy["residual"] + energy["transfer_loss"]
-    friction = energy["path_friction"]
+    stabilisation took, if noticeable; ``energy``: the table by column, "time" (s,) [time] and others (s,) [energy]."""
+    account, lost = energy_account(energy), lost_by_cause(energy)
+    unexplained = lost | {"residual_contacts": lost["residual_contacts"] - energy["path_friction"]}
+    created, vanished = account.share(account.creation.largest), account.share(account.loss.largest)
     warnings = []
-    if account.created >= NOTICEABLE:
-        shares = _shares(sums, -1.0, int(_excess(-lost).argmax()), account.put_in)
-        warnings.append(_warning(account.created, "came from nowhere", shares))
-    if account.lost >= NOTICEABLE:
-        beyond = sums | {"residual_contacts": sums["residual_contacts"] - friction}
-        shares = _shares(beyond, 1.0, int(_excess(lost - friction).argmax()), account.put_in)
-        warnings.append(_warning(account.lost, "vanished", shares))
-    told = account.created if account.unaccounted < 0.0 else account.lost
-    if abs(account.unaccounted) >= NOTICEABLE > told:
-        at_end = {name: float(np.sign(account.unaccounted) * energy[name][-1]) / account.put_in for name in PARTS}
-        warnings.append(_warning(account.unaccounted, "is unaccounted for at the end", at_end))
+    if created >= NOTICEABLE:
+        came = {name: -values for name, values in lost.items()}
+        warnings.append(_flow_warning(energy["time"], account, account.creation, came, "came from nowhere"))
+    if vanished >= NOTICEABLE:
+        warnings.append(_flow_warning(energy["time"], account, account.loss, unexplained, "vanished"))
+    if abs(account.unaccounted) >= NOTICEABLE > (created if account.unaccounted < 0.0 else vanished):
+        shares = {name: abs(account.unaccounted) * energy[name][-1] / energy["residual"][-1] for name in PARTS}
+        said = "of the energy put in is unaccounted for at the end"
+        warnings.append(_warning(account.unaccounted, said, shares))
     if account.grad_div >= STABILISED:
         taken = f"{per_cent(account.grad_div)} of the energy put in was taken by stabilisation"
         text = f"{taken}, in cells too coarse for the flow"
@@ -149,15 +160,17 @@ def _excess(balance: FloatArray) -> FloatArray:
     return excess
 
 
-def _lost_by_cause(energy: Table) -> dict[str, FloatArray]:
-    """The parts of the residual (s,); what a transfer took is re-meshing's."""
-    residual = {name: energy[name] for name in PARTS}
-    return residual | {"residual_remeshing": residual["residual_remeshing"] + energy["transfer_loss"]}
+def _share(amount: float, whole: float) -> float:
+    return amount / whole if whole > 0.0 else 0.0
 
 
-def _shares(sums: Mapping[str, FloatArray], sign: float, worst: int, put_in: float) -> dict[str, float]:
-    """``sign`` times what each sum (s,) has grown by from the first step to the ``worst`` state, over ``put_in``."""
-    return {name: sign * float(_excess(values)[worst]) / put_in for name, values in sums.items()}
+def _flow_warning(
+    time: FloatArray, account: EnergyAccount, flow: Flow, sums: Mapping[str, FloatArray], what: str
+) -> EnergyWarning:
+    """Warn of the largest amount of a ``flow``, to which each of the ``sums`` (s,) has added what it grew by."""
+    shares = {name: account.share(float(values[flow.end] - values[flow.start])) for name, values in sums.items()}
+    between = f"between {time[flow.start]:.4g} and {time[flow.end]:.4g}"
+    return _warning(account.share(flow.largest), f"of the energy at hand {what} {between}", shares)
 
 
 def _warning(share: float, what: str, shares: Mapping[str, float]) -> EnergyWarning:
@@ -166,5 +179,4 @@ def _warning(share: float, what: str, shares: Mapping[str, float]) -> EnergyWarn
     told = [cause for cause in causes if shares[cause.part] >= _TOLD * abs(share)]
     reasons = ", ".join(f"{per_cent(shares[cause.part])} {cause.text}" for cause in told)
     consequence = "; do not rely on this run" if serious else ""
-    text = f"{per_cent(share)} of the energy put in {what}: {reasons}{consequence}"
-    return EnergyWarning(serious, text, told[0].remedy)
+    return EnergyWarning(serious, f"{per_cent(share)} {what}: {reasons}{consequence}", told[0].remedy)

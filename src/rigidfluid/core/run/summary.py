@@ -18,7 +18,8 @@ from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.ranks import Ranks
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.output.energy_account import Table, energy_account, energy_warnings
+from rigidfluid.core.output.energy_account import EnergyAccount, energy_account, energy_warnings
+from rigidfluid.core.output.energy_flows import Table
 from rigidfluid.core.output.records import LEDGER_COLUMNS, count_cells
 from rigidfluid.core.output.verdict import verdict
 from rigidfluid.core.run.cycles import cycles, start_remarks
@@ -41,8 +42,9 @@ FIGURES = (
     *("reynolds_solid_density", "reynolds", "smallest_gap", "rest_position", "cycles", "remesh_jumps", "energy"),
 )
 """Keys of summary.json that hold numbers of a run, or tables and lists of them."""
-ACCOUNT = ("put_in", "created", "lost", "unaccounted", "grad_div")
-ENERGIES = (*LEDGER_COLUMNS, "relative_residual", *ACCOUNT)
+ACCOUNT = ("at_hand", "round_off", "put_in", "created", "lost", "unaccounted", "grad_div")
+FLOWS = ("largest_creation", "summed_creation", "largest_loss", "summed_loss")
+ENERGIES = (*LEDGER_COLUMNS, "relative_residual", *ACCOUNT, *FLOWS)
 """Keys of its table ``energy`` that hold numbers."""
 
 
@@ -149,8 +151,18 @@ def energy_balance(ledger: Ledger, energy: Table) -> dict[str, Any]:
     the ``warnings`` of that; by the ledger at the end and the table of ``energy`` over time."""
     account = energy_account(energy)
     stored = {name: getattr(ledger, name) for name in (*LEDGER_COLUMNS, "relative_residual")}
-    shares = {name: getattr(account, name) for name in ACCOUNT}
+    shares = {name: getattr(account, name) for name in ACCOUNT} | _flows(account, energy["time"])
     return stored | shares | {"warnings": [asdict(warning) for warning in energy_warnings(energy)]}
+
+
+def _flows(account: EnergyAccount, time: FloatArray) -> dict[str, Any]:
+    """Largest and summed creation and loss over what was at hand, when the largest was, and sums by cause [energy]."""
+    found: dict[str, Any] = {}
+    for name, flow in (("creation", account.creation), ("loss", account.loss)):
+        found |= {f"largest_{name}": account.share(flow.largest), f"summed_{name}": account.share(flow.summed)}
+        found[f"{name}_between"] = [float(time[flow.start]), float(time[flow.end])]
+        found[f"{name}_by_cause"] = flow.by_cause
+    return found
 
 
 def versions() -> dict[str, str]:

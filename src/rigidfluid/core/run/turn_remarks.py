@@ -24,7 +24,8 @@ def turn_remarks(history: History) -> list[Remark]:
     """
     energy = history.energy
     account = energy_account(energy)
-    if account.lost < NOTICEABLE or energy["residual_steps"][-1] < NOTICEABLE * account.put_in:
+    loss, steps = account.loss, energy["residual_steps"]
+    if account.share(min(loss.largest, steps[loss.end] - steps[loss.start])) < NOTICEABLE:
         return []
     spins = tuple(name for name in columns(history.dimension)["bodies"] if name in ("w", "wx", "wy", "wz"))
     bodies = history.table("bodies", ("time", "body", *spins))

@@ -129,11 +129,12 @@ def energy_plot(results: Results) -> Figure:
     axes.plot(energy["time"], supplied, color=BLACK, linestyle="--", label="supplied + initial")
     axes.set_ylabel("energy [energy]")
     account = energy_account(energy)
-    scale = 100.0 / (account.put_in or 1.0)
+    scale = 100.0 * account.share(1.0)
     _draw_residual(below, {name: scale * values for name, values in energy.items() if name != "time"}, energy["time"])
-    below.set_ylabel("not accounted for\n[% of what was put in]")
-    told = f"created {per_cent(account.created)}, lost {per_cent(account.lost)}"
-    below.set_title(f"{told}, {per_cent(account.unaccounted)} unaccounted for at the end", fontsize=9)
+    below.set_ylabel("not accounted for\n[% of what was at hand]")
+    created, lost = (per_cent(account.share(flow.largest)) for flow in (account.creation, account.loss))
+    told = f"created {created}, lost {lost} at most in a stretch"
+    below.set_title(f"{told}, {per_cent(account.share(energy['residual'][-1]))} unaccounted for at the end", fontsize=9)
     add_legend(figure)
     return figure
 

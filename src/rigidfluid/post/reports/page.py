@@ -31,12 +31,15 @@ _ENERGIES = {
     "residual_start": "of it in first steps",
     "path_friction": "of it at most friction of impacts between the fluid's solutions",
     "put_in": "put in: stored at the start, and the most that was supplied",
+    "at_hand": "at hand: the most that was there at once",
 }
 _SHARES = {
-    "created": "created from nowhere at most, by any time",
-    "lost": "lost at most, by any time, beyond friction of impacts",
-    "grad_div": "taken by grad-div stabilisation, until the end",
-    "unaccounted": "not accounted for, at the end",
+    "largest_creation": "created from nowhere at most, over what was at hand",
+    "largest_loss": "lost at most, beyond friction of impacts, over what was at hand",
+    "summed_creation": "created, summed, in one stretch, over what was at hand",
+    "summed_loss": "lost, summed, in one stretch, over what was at hand",
+    "grad_div": "taken by grad-div stabilisation, until the end, over what was put in",
+    "unaccounted": "not accounted for, at the end, over what was put in",
 }
 
 
@@ -115,7 +118,7 @@ def _energy(energy: Mapping[str, float]) -> Iterable[tuple[str, object]]:
     for key, meaning in _ENERGIES.items():
         yield f"{meaning} [energy]", energy[key]
     for key, meaning in _SHARES.items():
-        yield f"{meaning}, over what was put in", per_cent(energy[key])
+        yield meaning, per_cent(energy[key])
 
 
 def _cost(summary: Mapping[str, Any]) -> Iterable[tuple[str, object]]:

@@ -11,7 +11,7 @@ from scenes import wet_tables
 from throat import SLIPPERY, throat
 
 import rigidfluid
-from rigidfluid.core.output.energy_account import PARTS
+from rigidfluid.core.output.energy_flows import PARTS
 from rigidfluid.core.output.history import History
 from rigidfluid.core.scene.scene import Scene
 

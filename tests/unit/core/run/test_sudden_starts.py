@@ -12,7 +12,7 @@ from falling import SCENES
 from starts import INFLOW, STREAM, disk_in_box
 
 import rigidfluid
-from rigidfluid.core.output.energy_account import PARTS
+from rigidfluid.core.output.energy_flows import PARTS
 from rigidfluid.core.output.history import History
 
 LID = [{"on": "top", "type": "wall", "velocity": [1.0, 0.0]}]

@@ -19,6 +19,7 @@ from rigidfluid import registry
 from rigidfluid.core.model.types import Fields
 from rigidfluid.core.output.energy_account import per_cent
 from rigidfluid.core.output.vtu import read_pvd, read_vtu, write_vtu
+from rigidfluid.core.run.summary import FLOWS
 from rigidfluid.errors import OutputError, PluginError
 from rigidfluid.post.movies import Look, movie
 from rigidfluid.post.reports import report
@@ -70,9 +71,10 @@ def test_the_page_needs_no_other_file(fall: Path, written: list[Path]) -> None:
     assert 'src="' not in page.replace('src="data:', "")
     for figure in (summary["reynolds"], summary["smallest_gap"], summary["energy"]["dissipation"]):
         assert f"{figure:.5g}" in page
-    for share in ("created", "lost", "unaccounted"):
+    for share in (*FLOWS, "unaccounted"):
         assert per_cent(summary["energy"][share]) in page
-    assert f"{summary['energy']['put_in']:.5g}" in page
+    for energy in ("put_in", "at_hand"):
+        assert f"{summary['energy'][energy]:.5g}" in page
     assert "friction of impacts between the fluid's solutions" in unescape(page)
     assert "size_body = 0.08" in page
     assert "of it: advance [s]" in page
