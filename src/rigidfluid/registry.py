@@ -162,7 +162,10 @@ class Registry:
     def _remedy(self, kind: Kind[Any], name: str) -> str:
         unusable = [entry for entry in self.entries if entry.kind is kind and not entry.available]
         hints = "".join(f" {entry.name!r} is not usable here: {entry.hint}" for entry in unusable)
-        failures = "".join(f" Plug-in {one.name} of {one.origin} did not load: {one.reason.removesuffix('.')}." for one in self.unloaded)
+        failures = "".join(
+            f" Plug-in {one.name} of {one.origin} did not load: {one.reason.removesuffix('.')}."
+            for one in self.unloaded
+        )
         guess = suggestion(name, self.names(kind))
         return (guess or "`rigidfluid plugins` lists what is installed.") + hints + failures
 
@@ -217,7 +220,7 @@ def _offered(kind: Kind[Any], function: Callable[[], Any], plugin: str) -> list[
 
 def _check_class(kind: Kind[Any], part: Any, plugin: str) -> None:
     subject, interface = f"plug-in {plugin}", kind.interface.__name__
-    if not (inspect.isclass(part) and issubclass(part, kind.interface)):
+    if not _derives(part, kind.interface):
         raise PluginError(subject, f"{part!r} as a {kind.title}", f"a subclass of {interface}", "Derive it from there.")
     if part.__abstractmethods__:
         found = f"{part.__name__} without {', '.join(sorted(part.__abstractmethods__))}"
@@ -226,6 +229,10 @@ def _check_class(kind: Kind[Any], part: Any, plugin: str) -> None:
         refuse_other_types(part, part)
     except Wrong as wrong:
         raise PluginError(subject, f"{part.__name__} with {wrong.found}", wrong.allowed, "Mend the class.") from None
+
+
+def _derives(part: Any, parent: type[Any]) -> bool:
+    return inspect.isclass(part) and issubclass(part, parent)
 
 
 def missing_packages(part: type[Part]) -> str:

@@ -62,7 +62,7 @@ def check_detector(system: System, pose: Pose, mesh: Mesh | None) -> None:
         a, b = (_side(system, pose, mesh, number, error) for number in pair)
         apart = _searched(a, b)
         reach = apart + a.off + b.off
-        if 0.0 < apart and (reach <= system.reach or not system.detection.on_mesh):
+        if apart > 0.0 and (reach <= system.reach or not system.detection.on_mesh):
             _compare(system, pose, mesh, (a, b), reach)
 
 
@@ -71,14 +71,26 @@ def _compare(system: System, pose: Pose, mesh: Mesh | None, sides: tuple[_Side, 
     rows = np.flatnonzero((found.body_a == a.number) & (found.body_b == b.number))
     names = f"{system.surfaces[a.number]} and {system.surfaces[b.number]}"
     if len(rows) == 0:
+        _refuse_contradictory(sides)
         wrong = Wrong(f"no contact of {names}", f"one with a gap of {reach:.6g} at most, which a naive search finds")
         raise told_of(system.detector, "detect", wrong)
     for side, points in ((a, found.point_a[rows]), (b, found.point_b[rows])):
         off = float(np.abs(side.distance(points)).max())
         if off > side.off:
+            _refuse_contradictory(sides)
             surface = system.surfaces[side.number]
             wrong = Wrong(f"a contact of {names} {off:.3g} off {surface}", f"points on it, or {side.off:.3g} off")
             raise told_of(system.detector, "detect", wrong)
+
+
+def _refuse_contradictory(sides: tuple[_Side, _Side]) -> None:
+    """Raise PluginError for a body whose samples are not on its surface: then the detector may be right."""
+    for side in sides:
+        if isinstance(side.shape, Body):
+            off = float(np.abs(side.distance(side.samples())).max())
+            if off > _ROUNDING * side.shape.bounding_radius:
+                wrong = Wrong(f"points that are {off:.3g} from the surface by its `signed_distance`", "points on it")
+                raise told_of(side.shape, "sample_surface", wrong)
 
 
 def _nearest_pairs(system: System, pose: Pose) -> list[tuple[int, int]]:
@@ -87,7 +99,7 @@ def _nearest_pairs(system: System, pose: Pose) -> list[tuple[int, int]]:
 
     radii, found = np.array([body.bounding_radius for body in system.bodies]), dict[tuple[int, int], float]()
     if len(radii) > 1:
-        distance, other = (each[:, 1] for each in cKDTree(pose.position).query(pose.position, k=2))
+        distance, other = (np.asarray(each)[:, 1] for each in cKDTree(pose.position).query(pose.position, k=2))
         gap = distance - radii - radii[other]
         for a in np.argsort(gap)[: 2 * MOST_PAIRS].tolist():  # a pair comes twice
             found[min(a, int(other[a])), max(a, int(other[a]))] = float(gap[a])

@@ -8,7 +8,7 @@ import numpy as np
 
 from rigidfluid.core.contact.gap_curvature import with_effective_radii
 from rigidfluid.core.contact.representative_contacts import contacts_at_gaps, pair_contacts, wall_contacts
-from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.guarded import told_of
 from rigidfluid.core.geometry.wrong import Wrong
 from rigidfluid.core.model.contacts import joined, select
@@ -44,7 +44,9 @@ def _some_contact(system: System, interaction: Interaction) -> Contacts:
     hypothetical += [wall_contacts(system, [body] * len(system.walls), system.walls) for body in bodies]
     contacts = joined(hypothetical)
     contacts = select(contacts, np.flatnonzero(interaction.acts_in(contacts))[:1])
-    return with_effective_radii(contacts, system.bodies, system.walls, system.pose) if interaction.law.film else contacts
+    return (
+        with_effective_radii(contacts, system.bodies, system.walls, system.pose) if interaction.law.film else contacts
+    )
 
 
 def _check_law(law: ForceLaw, contacts: Contacts) -> None:
@@ -59,7 +61,9 @@ def _check_law(law: ForceLaw, contacts: Contacts) -> None:
     _check_slope(law, "stiffness", contacts, stiffness, lambda one: np.sum(law.force(one) * one.normal, axis=1))
     motion = Motion(contacts.normal, np.ones(len(contacts)))
     for sign in (1.0, -1.0):
-        power = sign * np.sum(law.damping(contacts, Motion(sign * motion.velocity, motion.mass)) * contacts.normal, axis=1)
+        power = sign * np.sum(
+            law.damping(contacts, Motion(sign * motion.velocity, motion.mass)) * contacts.normal, axis=1
+        )
         if np.any(power > 0.0):
             raise _refusal(law, "damping", contacts, power, power > 0.0, "powers, force times velocity, of 0 or less")
 
@@ -80,7 +84,7 @@ def _check_slope(
 
 
 def _refusal(
-    law: ForceLaw, key: str, contacts: Contacts, values: FloatArray, wrong: FloatArray, allowed: str
+    law: ForceLaw, key: str, contacts: Contacts, values: FloatArray, wrong: BoolArray, allowed: str
 ) -> Exception:
     found = f"{values[wrong][0]:.6g} at a gap of {contacts.gap[wrong][0]:.6g}"
     return told_of(law, key, Wrong(found, allowed))

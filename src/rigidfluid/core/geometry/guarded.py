@@ -35,14 +35,16 @@ class Guarded(ABCMeta):
     """Type of interfaces and of the classes that implement them.
 
     What an interface declares by `gives` is checked at each call. Properties are asked once an object is made, and so
-    are attributes that the interface annotates. An interface has a ``kind``, its name in messages. Errors that are none of
-    rigidfluid become a PluginError that names the part and the method, and keeps their cause.
+    are attributes that the interface annotates. An interface has a ``kind``, its name in messages. Errors that are
+    none of rigidfluid become a PluginError that names the part and the method, and keeps their cause.
     """
 
     def __init__(cls, name: str, bases: tuple[type, ...], namespace: dict[str, Any], **rest: Any) -> None:
         super().__init__(name, bases, namespace, **rest)
         cls._values: dict[str, Check | None] = {}
-        declared = {key: member for base in reversed(cls.__mro__) for key, member in vars(base).items() if _declared_by(member)}
+        declared = {
+            key: member for base in reversed(cls.__mro__) for key, member in vars(base).items() if _declared_by(member)
+        }
         for key, interface in declared.items():
             member = next(vars(base)[key] for base in cls.__mro__ if key in vars(base))
             plain = _function_of(member) is None
@@ -134,7 +136,9 @@ def told_of(part: Any, key: str, error: BaseException) -> RigidfluidError:
     subject = f"{named(part if isinstance(part, type) else type(part))}, {key}"
     if isinstance(error, Wrong):
         if error.shorter:
-            return StepRejected(subject, error.found, error.allowed, f"Shorten time.step; if that does not help: {_REMEDY}")
+            return StepRejected(
+                subject, error.found, error.allowed, f"Shorten time.step; if that does not help: {_REMEDY}"
+            )
         return PluginError(subject, error.found, error.allowed, _REMEDY)
     frame, line = list(walk_tb(error.__traceback__))[-1]
     found = f"{type(error).__name__}: {error}, raised in module {frame.f_globals.get('__name__')}, line {line}"

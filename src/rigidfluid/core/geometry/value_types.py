@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import lru_cache
+from functools import cache
 from inspect import isclass
 from types import UnionType
 from typing import Any, ClassVar, Literal, Union, get_args, get_origin, get_type_hints
@@ -24,7 +24,7 @@ def refuse_other_types(cls: type, part: Any) -> None:
                 raise Wrong(f"{found} as {name}", str(getattr(hint, "__name__", hint)) if isclass(hint) else str(hint))
 
 
-@lru_cache(maxsize=None)
+@cache
 def annotated(cls: type) -> tuple[tuple[str, Any, bool], ...]:
     """Name and type of what interfaces of a class annotate, and whether it is the class's."""
     hints: dict[str, Any] = {}
@@ -60,5 +60,7 @@ def _fits(value: Any, hint: Any) -> bool:
     if origin is tuple:
         return isinstance(value, tuple) and all(_fits(one, inner[0]) for one in value)
     if origin is Mapping or (isclass(origin) and issubclass(origin, Mapping)):
-        return isinstance(value, Mapping) and all(_fits(one, inner[0]) and _fits(to, inner[1]) for one, to in value.items())
+        return isinstance(value, Mapping) and all(
+            _fits(one, inner[0]) and _fits(to, inner[1]) for one, to in value.items()
+        )
     return isinstance(value, origin or hint)

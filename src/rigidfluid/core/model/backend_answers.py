@@ -66,7 +66,9 @@ def fields(answer: Any, *_: Any) -> None:
     refuse_others(answer, Fields)
     count = len(answer.points)
     for name in ("points", "velocity", "pressure"):
-        refuse_other_rows(getattr(answer, name), (count, *np.shape(answer.points)[1:])[: 1 + (name != "pressure")], name)
+        refuse_other_rows(
+            getattr(answer, name), (count, *np.shape(answer.points)[1:])[: 1 + (name != "pressure")], name
+        )
     refuse_other_shape(answer.cells, np.shape(answer.cells), "cells", "iu")
 
 

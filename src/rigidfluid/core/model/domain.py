@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from rigidfluid.core.geometry.answers import anything, corners, instance, number, optional, several
+from rigidfluid.core.geometry.answers import anything, instance, number, optional, several
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.facets import Facets
 from rigidfluid.core.geometry.guarded import gives

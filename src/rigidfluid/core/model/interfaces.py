@@ -57,6 +57,7 @@ class Part(metaclass=Guarded):
     """Replaceable part: its name, the packages it requires and its options. A ``kind`` of parts says with `gives` what
     its methods give; whoever gives anything else is named."""
 
+    kind: ClassVar[str]
     name: ClassVar[str]
     requires: ClassVar[Mapping[str, str]] = {}
     Options: ClassVar[type[PartOptions]] = PartOptions
