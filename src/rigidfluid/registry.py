@@ -192,7 +192,7 @@ def _check_hooks(manager: pluggy.PluginManager, module: Any, plugin: str) -> Non
 
 
 def _entries(manager: pluggy.PluginManager, plugin: str, origin: str) -> list[Entry]:
-    """What a plug-in offers; raises PluginError if that is no list of complete parts."""
+    """Parts that a plug-in offers; raises PluginError if that is no list of complete ones."""
     entries = []
     for kind in KINDS:
         caller: pluggy.HookCaller = getattr(manager.hook, kind.hook)

@@ -10,14 +10,28 @@ from typing import Any
 import numpy as np
 
 from rigidfluid.backends.dry import Dry
+from rigidfluid.backends.scikit_fem.backend import ScikitFem
 from rigidfluid.bodies.sphere import Sphere
+from rigidfluid.core.joints.constraints import Constraint, SamePoint
+from rigidfluid.core.mesh.size_interface import SizeField
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interfaces import Component, ForceLaw, Mechanism, Part
 from rigidfluid.core.model.types import Pose, Twist
 from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.domains.box import Box
 from rigidfluid.joints.hinge import Hinge
-from rigidfluid.registry import BODY, DETECTOR, DOMAIN, FLUID_BACKEND, FORCE_LAW, JOINT, MECHANISM, Entry, Kind
+from rigidfluid.registry import (
+    BODY,
+    DETECTOR,
+    DOMAIN,
+    FLUID_BACKEND,
+    FORCE_LAW,
+    JOINT,
+    MECHANISM,
+    SIZE_FIELD,
+    Entry,
+    Kind,
+)
 
 Change = Callable[[Any], Any]
 
@@ -225,6 +239,34 @@ CHANGES: dict[tuple[Kind[Any], type[Part], str], dict[str, Change]] = {
     },
 }
 """Lies by kind, honest part and method."""
+PAIR: dict[str, Change] = (
+    ANY
+    | NONE
+    | {
+        "one": lambda answer: answer[:1],
+        "lists": lambda answer: tuple(each.tolist() for each in answer),
+        "NaN": lambda answer: (answer[0] * np.nan, answer[1]),
+        "shapes": lambda answer: (answer[0][:1], answer[1]),
+        "flat": lambda answer: (answer[0].ravel(), answer[1]),
+    }
+)
+CONSTRAINED: dict[str, dict[str, Change]] = {
+    "directions": PAIR,
+    "misfit": ROWS,
+    "compliance": ROWS | {"negative": lambda answer: answer - 1.0},
+    "rate": ROWS,
+    "levers": ROWS,
+}
+"""Lies of a constraint, by method."""
+WET: dict[str, dict[str, Change]] = {
+    "initial": {key: STATE[key] for key in ("None", "text", "NaN energy", "state", "KeyError")},
+    "advance": {key: STEP[key] for key in ("None", "lost", "no twist", "no energy", "ValueError")},
+    "fields": ANY | NONE,
+    "probe": {key: PAIR[key] for key in ("None", "one", "lists", "NaN")},
+}
+"""Lies of a backend with a fluid, by method."""
+SIZED: dict[str, Change] = ROWS | {"negative": lambda answer: -answer}
+"""Lies of a size field."""
 MADE: dict[tuple[Kind[Any], type[Part]], dict[str, Any]] = {
     (FORCE_LAW, Springy): {"range": np.nan, "range twice": "a lie", "overlap": "a lie", "conservative": None},
     (DETECTOR, SphereDetector): {"bodies": None},
@@ -238,11 +280,17 @@ MADE: dict[tuple[Kind[Any], type[Part]], dict[str, Any]] = {
 
 @dataclass(frozen=True)
 class Lie:
-    """A class of a kind that lies by a method or attribute ``key``."""
+    """A class of a kind that lies by a method or attribute ``key``, and who is ``told``: another, of which it is made,
+    if so."""
 
     kind: Kind[Any]
     part: type[Part]
     key: str
+    liar: str = ""
+
+    @property
+    def told(self) -> str:
+        return self.liar or f"{self.kind.title} {self.part.name!r}"
 
     @property
     def entry(self) -> Entry:
@@ -250,31 +298,53 @@ class Lie:
 
 
 def lies() -> Iterator[Lie]:
-    """All of them."""
+    """Lies of parts that are asked where there is no fluid as well."""
     for (kind, base, key), changes in CHANGES.items():
         for name, change in changes.items():
-            yield Lie(
-                kind,
-                _derived(
-                    base,
-                    f"{key}: {name}",
-                    {key: _changed(vars(base)[key] if key in vars(base) else getattr(base, key), change)},
-                ),
-                key,
-            )
+            yield Lie(kind, _derived(base, f"{key}: {name}", {key: _changed(_member(base, key), change)}), key)
     for (kind, base), values in MADE.items():
         for name, value in values.items():
             key = name.split()[0]
             yield Lie(kind, _derived(base, f"attribute {name}", {"__init__": _setting(base, key, value)}), key)
-        for error in (ValueError("a lie"), SystemExit(0)):
-            yield Lie(
-                kind, _derived(base, f"{type(error).__name__} when made", {"__init__": _failing(error)}), "__init__"
-            )
-        yield Lie(kind, _derived(base, "not made", {"__init__": lambda *_: None}), "__init__")
+        made = {
+            "ValueError": _failing(ValueError("a lie")),
+            "SystemExit": _failing(SystemExit(0)),
+            "Nothing": lambda *_: None,
+        }
+        for name, init in made.items():
+            yield Lie(kind, _derived(base, f"{name} when made", {"__init__": init}), "__init__")
+
+
+def constraint_lies() -> Iterator[Lie]:
+    """Lies of constraints, each in a joint."""
+    for key, changes in CONSTRAINED.items():
+        for name, change in changes.items():
+            point = _derived(SamePoint, f"{key}: {name}", {key: _changed(_member(SamePoint, key), change)})
+            joint = _derived(Hinge, f"with {key}: {name}", {"held": _holding(point)})
+            yield Lie(JOINT, joint, key, f"constraint {point.name!r}")
+
+
+def wet_lies() -> Iterator[Lie]:
+    """Lies of parts that are asked where there is a fluid alone."""
+    for key, changes in WET.items():
+        for name, change in changes.items():
+            part = _derived(ScikitFem, f"{key}: {name}", {key: _changed(_member(ScikitFem, key), change)})
+            yield Lie(FLUID_BACKEND, part, key)
+    for name, change in SIZED.items():
+        even = {"edge_length": _changed(lambda _, points, around, flow: np.ones(len(points)), change)}
+        yield Lie(SIZE_FIELD, _derived(SizeField, f"edge_length: {name}", even), "edge_length")
+
+
+def _holding(point: type[Constraint]) -> Any:
+    return lambda joint, name, markers: [point(name, markers, np.eye(joint.dimension))]
+
+
+def _member(cls: type, key: str) -> Any:
+    return next(vars(base)[key] for base in cls.__mro__ if key in vars(base))
 
 
 def _derived(base: type[Part], name: str, namespace: dict[str, Any]) -> Any:
-    return type(base)("Liar", (base,), {"name": f"{base.name} {name}", **namespace})
+    return type(base)("Liar", (base,), {"name": f"{getattr(base, 'name', base.__name__)} {name}", **namespace})
 
 
 def _changed(honest: Any, change: Change) -> Any:

@@ -59,11 +59,8 @@ def _check_law(law: ForceLaw, contacts: Contacts) -> None:
         raise _refusal(law, "force", contacts, across, across > 0.0, "forces along the normal, and damping besides")
     _check_slope(law, "force", contacts, along, law.energy)
     _check_slope(law, "stiffness", contacts, stiffness, lambda one: np.sum(law.force(one) * one.normal, axis=1))
-    motion = Motion(contacts.normal, np.ones(len(contacts)))
-    for sign in (1.0, -1.0):
-        power = sign * np.sum(
-            law.damping(contacts, Motion(sign * motion.velocity, motion.mass)) * contacts.normal, axis=1
-        )
+    for velocity in (contacts.normal, -contacts.normal):
+        power = np.sum(law.damping(contacts, Motion(velocity, np.ones(len(contacts)))) * velocity, axis=1)
         if np.any(power > 0.0):
             raise _refusal(law, "damping", contacts, power, power > 0.0, "powers, force times velocity, of 0 or less")
 

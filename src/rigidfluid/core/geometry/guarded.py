@@ -34,9 +34,9 @@ def gives(check: Check) -> Callable[[F], F]:
 class Guarded(ABCMeta):
     """Type of interfaces and of the classes that implement them.
 
-    What an interface declares by `gives` is checked at each call. Properties are asked once an object is made, and so
-    are attributes that the interface annotates. An interface has a ``kind``, its name in messages. Errors that are
-    none of rigidfluid become a PluginError that names the part and the method, and keeps their cause.
+    Answers that an interface declares by `gives` are checked at each call. Properties are asked once an object is made,
+    and so are attributes that the interface annotates. An interface has a ``kind``, its name in messages. Errors that
+    are none of rigidfluid become a PluginError that names the part and the method, and keeps their cause.
     """
 
     def __init__(cls, name: str, bases: tuple[type, ...], namespace: dict[str, Any], **rest: Any) -> None:
@@ -132,7 +132,7 @@ def _blamed(cls: type, key: str) -> Iterator[None]:
 
 
 def told_of(part: Any, key: str, error: BaseException) -> RigidfluidError:
-    """What a part, or its class, has raised or given by a method or attribute ``key``, as an error that names it."""
+    """Error of a part, or its class, that names its method or attribute ``key`` and what that has raised or given."""
     subject = f"{named(part if isinstance(part, type) else type(part))}, {key}"
     if isinstance(error, Wrong):
         if error.shorter:

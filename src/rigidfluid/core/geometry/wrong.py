@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 class Wrong(Exception):
-    """What a part gave, or has: what was ``found``, what is ``allowed``, and whether a ``shorter`` step may mend it."""
+    """Answer that no part may give: what was ``found``, what is ``allowed``, whether a ``shorter`` step may mend it."""
 
     def __init__(self, found: str, allowed: str, shorter: bool = False) -> None:
         super().__init__(found)

@@ -58,7 +58,7 @@ _ODD = {
 
 @njit(cache=True)
 def _first_odd(a, b, at_wall, there, bodies, gap, point_a, point_b, normal):
-    """What is wrong, 0 if nothing, and in which row: in one loop, as a detector is asked in every substep."""
+    """Kind of the first odd row, 0 if there is none, and its number: in one loop, as every substep asks."""
     dimension = normal.shape[1]
     for i in range(len(a)):
         if not (0 <= a[i] < bodies and 0 <= b[i] < len(there)) or not there[b[i]] or at_wall[i] != (b[i] >= bodies):
