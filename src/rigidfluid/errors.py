@@ -3,7 +3,7 @@
 RigidfluidError
 ├── SceneError          the scene or study file, or a value in it, cannot be used
 │   └── ArgumentError   a value that was given in Python, not in a file
-├── PluginError         a plug-in is missing, misspelt, doubled or incomplete
+├── PluginError         a plug-in is missing, misspelt, doubled or incomplete, or a part gives what none may
 ├── MeshError           no valid mesh can be made for this geometry
 ├── OutputError         a result cannot be written or read back
 └── StepError           the simulation cannot go on, even with the shortest step
@@ -52,7 +52,7 @@ class ArgumentError(SceneError, ValueError):
 
 
 class PluginError(RigidfluidError):
-    """A plug-in is missing, misspelt, doubled or incomplete."""
+    """A plug-in is missing, misspelt, doubled or incomplete, or a part gives what none may."""
 
 
 class MeshError(RigidfluidError):

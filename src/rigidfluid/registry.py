@@ -6,7 +6,7 @@ The built-in parts come through the same entry points as everyone else's.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Iterable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import metadata
 from importlib.util import find_spec
@@ -15,11 +15,12 @@ from typing import Any, Generic, TypeVar, cast
 import pluggy
 
 from rigidfluid import hookspecs
+from rigidfluid.core.geometry.value_types import refuse_other_types
+from rigidfluid.core.geometry.wrong import Wrong
 from rigidfluid.core.joints.joint import Joint
 from rigidfluid.core.mesh.size_interface import SizeField
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.foreign import no_exit
-from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Mechanism, Part, PartOptions
+from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Mechanism, Part
 from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.entry_points import load, origin
 from rigidfluid.errors import PluginError
@@ -30,23 +31,27 @@ P = TypeVar("P", bound=Part)
 
 @dataclass(frozen=True)
 class Kind(Generic[P]):
-    """One of the replaceable parts: its ``title``, the ``hook`` that offers it, its ``interface``, and the scene's
-    ``field`` that names it."""
+    """One of the replaceable parts: the ``hook`` that offers it, its ``interface``, and the scene's ``field`` that
+    names it."""
 
-    title: str
     hook: str
     interface: type[P]
     field: str
 
+    @property
+    def title(self) -> str:
+        """Name of the kind."""
+        return self.interface.kind
 
-FLUID_BACKEND = Kind("fluid backend", "rigidfluid_fluid_backends", FluidBackend, "fluid.backend")  # type: ignore[type-abstract]
-DETECTOR = Kind("detector", "rigidfluid_detectors", Detector, "contact.detector")  # type: ignore[type-abstract]
-FORCE_LAW = Kind("force law", "rigidfluid_force_laws", ForceLaw, "contact.law")  # type: ignore[type-abstract]
-BODY = Kind("body", "rigidfluid_bodies", Body, "body.type")  # type: ignore[type-abstract]
-DOMAIN = Kind("domain", "rigidfluid_domains", Domain, "domain.type")  # type: ignore[type-abstract]
-MECHANISM = Kind("mechanism", "rigidfluid_mechanisms", Mechanism, "mechanism.type")  # type: ignore[type-abstract]
-JOINT = Kind("joint", "rigidfluid_joints", Joint, "joint.type")  # type: ignore[type-abstract]
-SIZE_FIELD = Kind("size field", "rigidfluid_size_fields", SizeField, "mesh.field.type")  # type: ignore[type-abstract]
+
+FLUID_BACKEND = Kind("rigidfluid_fluid_backends", FluidBackend, "fluid.backend")  # type: ignore[type-abstract]
+DETECTOR = Kind("rigidfluid_detectors", Detector, "contact.detector")  # type: ignore[type-abstract]
+FORCE_LAW = Kind("rigidfluid_force_laws", ForceLaw, "contact.law")  # type: ignore[type-abstract]
+BODY = Kind("rigidfluid_bodies", Body, "body.type")  # type: ignore[type-abstract]
+DOMAIN = Kind("rigidfluid_domains", Domain, "domain.type")  # type: ignore[type-abstract]
+MECHANISM = Kind("rigidfluid_mechanisms", Mechanism, "mechanism.type")  # type: ignore[type-abstract]
+JOINT = Kind("rigidfluid_joints", Joint, "joint.type")  # type: ignore[type-abstract]
+SIZE_FIELD = Kind("rigidfluid_size_fields", SizeField, "mesh.field.type")  # type: ignore[type-abstract]
 KINDS: tuple[Kind[Any], ...] = (FLUID_BACKEND, DETECTOR, FORCE_LAW, BODY, DOMAIN, MECHANISM, JOINT, SIZE_FIELD)
 
 
@@ -64,7 +69,7 @@ class Entry:
 
 @dataclass(frozen=True)
 class Unloaded:
-    """A plug-in that could not be imported, and why."""
+    """A plug-in that could not be loaded, and why."""
 
     name: str
     origin: str
@@ -73,7 +78,7 @@ class Unloaded:
 
 @dataclass(frozen=True)
 class Registry:
-    """The parts that are installed, and the plug-ins that could not be imported."""
+    """The parts that are installed, and the plug-ins that could not be loaded."""
 
     entries: tuple[Entry, ...]
     unloaded: tuple[Unloaded, ...]
@@ -85,29 +90,27 @@ class Registry:
         Returns
         -------
         Registry
-            Available or not, every part that a plug-in offers.
+            Available or not, every part that a plug-in offers. A plug-in that cannot be imported, misspells a hook,
+            raises there, or offers what is no complete part, is unloaded, and breaks nothing else.
 
         Raises
         ------
         PluginError
-            If a plug-in misspells a hook, offers an incomplete class, or a name that is taken.
+            If two parts of a kind have one name.
         """
         manager = pluggy.PluginManager(GROUP)
         manager.add_hookspecs(hookspecs)
-        origins: dict[str, str] = {}
-        unloaded = []
+        entries, unloaded = list[Entry](), list[Unloaded]()
         for point in metadata.entry_points(group=GROUP):
             plugin = f"{point.name} of {origin(point)}"
             try:
-                module = load(point, f"plug-in {plugin}")
-            except ImportError as error:
-                unloaded.append(Unloaded(point.name, origin(point), str(error)))
-                continue
-            _register(manager, module, plugin)
-            origins[plugin] = origin(point)
-        entries = tuple(_entries(manager, origins))
+                _register(manager, load(point, f"plug-in {plugin}"), plugin)
+                entries += _entries(manager, plugin, origin(point))
+            except (ImportError, PluginError) as error:
+                unloaded.append(Unloaded(point.name, origin(point), str(error).removeprefix(f"plug-in {plugin}: ")))
+        entries.sort(key=lambda entry: KINDS.index(entry.kind))
         _refuse_doubles(entries)
-        return cls(entries, tuple(unloaded))
+        return cls(tuple(entries), tuple(unloaded))
 
     def names(self, kind: Kind[Any]) -> list[str]:
         """Names of all parts of a kind, in the order they were found."""
@@ -159,7 +162,10 @@ class Registry:
     def _remedy(self, kind: Kind[Any], name: str) -> str:
         unusable = [entry for entry in self.entries if entry.kind is kind and not entry.available]
         hints = "".join(f" {entry.name!r} is not usable here: {entry.hint}" for entry in unusable)
-        failures = "".join(f" Plug-in {one.name} of {one.origin} did not load: {one.reason}." for one in self.unloaded)
+        failures = "".join(
+            f" Plug-in {one.name} of {one.origin} did not load: {one.reason.removesuffix('.')}."
+            for one in self.unloaded
+        )
         guess = suggestion(name, self.names(kind))
         return (guess or "`rigidfluid plugins` lists what is installed.") + hints + failures
 
@@ -185,16 +191,31 @@ def _check_hooks(manager: pluggy.PluginManager, module: Any, plugin: str) -> Non
         raise PluginError(f"plug-in {plugin}", "no hook", ", ".join(hooks), "Mark its functions with @hookimpl.")
 
 
-def _entries(manager: pluggy.PluginManager, origins: dict[str, str]) -> Iterable[Entry]:
+def _entries(manager: pluggy.PluginManager, plugin: str, origin: str) -> list[Entry]:
+    """Parts that a plug-in offers; raises PluginError if that is no list of complete ones."""
+    entries = []
     for kind in KINDS:
         caller: pluggy.HookCaller = getattr(manager.hook, kind.hook)
         for implementation in caller.get_hookimpls():
-            with no_exit():
-                offered: Any = implementation.function()
-            for part in offered:
-                _check_class(kind, part, implementation.plugin_name)
-                hint = missing_packages(part)
-                yield Entry(kind, part.name, part, origins[implementation.plugin_name], not hint, hint)
+            if implementation.plugin_name == plugin:
+                for part in _offered(kind, implementation.function, plugin):
+                    _check_class(kind, part, plugin)
+                    hint = missing_packages(part)
+                    entries.append(Entry(kind, part.name, part, origin, not hint, hint))
+    return entries
+
+
+def _offered(kind: Kind[Any], function: Callable[[], Any], plugin: str) -> list[Any]:
+    """The list that a hook gives; raises PluginError if it gives another thing, raises or exits."""
+    subject, allowed = f"plug-in {plugin}", f"a list of subclasses of {kind.interface.__name__}"
+    try:
+        offered = function()
+    except (Exception, SystemExit) as error:  # foreign code may raise anything
+        found = f"{type(error).__name__}: {error}, in {kind.hook}"
+        raise PluginError(subject, found, allowed, "Mend the plug-in.") from error
+    if not isinstance(offered, list | tuple):
+        raise PluginError(subject, f"{offered!r} from {kind.hook}", allowed, "Return a list.")
+    return list(offered)
 
 
 def _check_class(kind: Kind[Any], part: Any, plugin: str) -> None:
@@ -204,10 +225,10 @@ def _check_class(kind: Kind[Any], part: Any, plugin: str) -> None:
     if part.__abstractmethods__:
         found = f"{part.__name__} without {', '.join(sorted(part.__abstractmethods__))}"
         raise PluginError(subject, found, f"a complete {interface}", "Write what is missing.")
-    if not isinstance(getattr(part, "name", None), str):
-        raise PluginError(subject, f"{part.__name__} without a name", 'name = "…"', "Name the class in its body.")
-    if not _derives(part.Options, PartOptions):
-        raise PluginError(subject, f"{part.__name__}.Options", "a subclass of PartOptions", "Derive it from there.")
+    try:
+        refuse_other_types(part, part)
+    except Wrong as wrong:
+        raise PluginError(subject, f"{part.__name__} with {wrong.found}", wrong.allowed, "Mend the class.") from None
 
 
 def _derives(part: Any, parent: type[Any]) -> bool:
@@ -220,7 +241,7 @@ def missing_packages(part: type[Part]) -> str:
     return " ".join(f"Package {package} is missing: install {part.requires[package]}." for package in missing)
 
 
-def _refuse_doubles(entries: tuple[Entry, ...]) -> None:
+def _refuse_doubles(entries: Sequence[Entry]) -> None:
     first: dict[tuple[str, str], Entry] = {}
     for entry in entries:
         other = first.setdefault((entry.kind.title, entry.name), entry)

@@ -14,9 +14,15 @@ Install = Callable[..., Path]
 
 
 def refusal() -> str:
-    with pytest.raises(PluginError) as caught:
-        Registry.load()
-    return str(caught.value)
+    """Why the one plug-in did not load; it breaks nothing else."""
+    registry = Registry.load()
+    registry.get(FORCE_LAW, "centre")
+    (plugin,) = registry.unloaded
+    assert (plugin.name, plugin.origin) == ("springy", "springy 1.2")
+    with pytest.raises(PluginError) as told:
+        registry.get(FORCE_LAW, "springy")
+    assert f"Plug-in springy of springy 1.2 did not load: {plugin.reason.removesuffix('.')}." in told.value.remedy
+    return plugin.reason
 
 
 def test_built_in_parts_are_there() -> None:
@@ -39,26 +45,28 @@ def test_plugin_is_found(install: Install, law: str) -> None:
 def test_misspelt_hook_is_refused(install: Install, law: str) -> None:
     install(law.replace("rigidfluid_force_laws", "rigidfluid_force_lews"))
     message = refusal()
-    assert "plug-in springy of springy 1.2: found hook 'rigidfluid_force_lews'" in message
+    assert "found hook 'rigidfluid_force_lews'" in message
     assert "Did you mean 'rigidfluid_force_laws'?" in message
 
 
 def test_hook_with_an_argument_is_refused(install: Install, law: str) -> None:
     install(law.replace("rigidfluid_force_laws()", "rigidfluid_force_laws(scene)"))
-    assert "plug-in springy of springy 1.2" in refusal()
+    assert "allowed is hooks without arguments" in refusal()
 
 
 def test_plugin_without_hook_is_refused(install: Install, law: str) -> None:
     install(law.replace("@hookimpl", ""))
     message = refusal()
-    assert "plug-in springy of springy 1.2: found no hook" in message
+    assert "found no hook" in message
     assert "@hookimpl" in message
 
 
 def test_double_name_names_both(install: Install, law: str) -> None:
     install(law)
     install(law, name="bouncy", module="bouncy_plugin")
-    message = refusal()
+    with pytest.raises(PluginError) as caught:
+        Registry.load()
+    message = str(caught.value)
     assert "force law 'springy'" in message
     assert "springy 1.2 (springy_plugin)" in message
     assert "bouncy 1.2 (bouncy_plugin)" in message
@@ -74,20 +82,31 @@ def test_missing_methods_are_named(install: Install, law: str) -> None:
     [
         ("return [Springy]", "return [1]", "1 as a force law; allowed is a subclass of ForceLaw"),
         ("(ForceLaw)", "", "as a force law; allowed is a subclass of ForceLaw"),
-        ('name = "springy"', "", "Springy without a name"),
+        ('name = "springy"', "", "Springy with nothing as name; allowed is str"),
+        ('name = "springy"', 'name = "springy"; requires = ["numpy"]', "Springy with list ['numpy'] as requires"),
+        ('name = "springy"', 'name = "springy"; requires = {"numpy": 1}', "as requires; allowed is"),
+        ('name = "springy"', 'name = "springy"; balls_only = "no"', "str 'no' as balls_only; allowed is bool"),
+        (
+            "return [Springy]",
+            "return Springy",
+            "from rigidfluid_force_laws; allowed is a list",
+        ),
+        ("return [Springy]", "return None", "found None from rigidfluid_force_laws"),
+        ("return [Springy]", "return Springy()", "TypeError"),
+        ("return [Springy]", "raise KeyError('lost')", "found KeyError: 'lost', in rigidfluid_force_laws"),
+        ("return [Springy]", "raise SystemExit(0)", "found SystemExit: 0, in rigidfluid_force_laws"),
+        ("import numpy as np", "raise SystemExit(3)", "found SystemExit: 3"),
         (
             'name = "springy"',
             'name = "springy"; Options = dict',
-            "Springy.Options; allowed is a subclass of PartOptions",
+            "Springy with type <class 'dict'> as Options; allowed is type[",
         ),
         ("import numpy as np", "1 / 0", "found ZeroDivisionError: division by zero"),
     ],
 )
 def test_wrong_class_is_refused(install: Install, law: str, old: str, new: str, text: str) -> None:
     install(law.replace(old, new))
-    message = refusal()
-    assert "plug-in springy of springy 1.2" in message
-    assert text in message
+    assert text in refusal()
 
 
 def test_plugin_that_cannot_be_imported_breaks_nothing_else(install: Install, law: str) -> None:

@@ -30,6 +30,7 @@ from rigidfluid.checks.static_load import rest_findings, stack_findings
 from rigidfluid.checks.stepping import step_findings
 from rigidfluid.checks.tolerance import tolerance_findings
 from rigidfluid.core.case.scene_model import Case, model_of
+from rigidfluid.core.contact.spot_check import spot_check
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.foreign import no_exit
 from rigidfluid.core.model.system import System
@@ -90,6 +91,7 @@ def check(case: Case) -> Report:
         model = model_of(case)
         system = assemble(model)
         start = initial_contacts(system.domain, model.exact_detector, system.bodies, system.pose, gap_reach(system))
+        spot_check(system, system.pose, None)
         found = sorted(findings(model, system, start), key=lambda finding: GRADES.index(finding.grade))
         rows = tuple(features(system, model.fluid.mesh)), tuple(_rows(system, start))
         return Report(model.name, domain_row(model), *rows, tuple(found))

@@ -21,12 +21,13 @@ from rigidfluid.core.case.system import build_system
 from rigidfluid.core.geometry.facet_surface import FacetSurface
 from rigidfluid.core.geometry.facets import Facets
 from rigidfluid.core.geometry.wall import Wall
+from rigidfluid.core.geometry.wrong import Wrong
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_motion import MeshMotion, held_components
 from rigidfluid.core.mesh.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_mesh
-from rigidfluid.core.model.contact_results import refuse_lost_contacts
+from rigidfluid.core.model.contact_results import refuse_odd
 from rigidfluid.core.model.interfaces import Detector, PartOptions
 from rigidfluid.core.model.types import Contacts, Mesh, Motion, Pose
 from rigidfluid.core.run.run import run
@@ -348,8 +349,8 @@ def test_a_contact_that_takes_a_wall_for_a_body_is_refused() -> None:
     system = build_system(built(DISK, fluid=DRY))
     found = system.detector.detect(system.pose, None, np.inf)
     lying = replace(found, at_wall=~found.at_wall)
-    with pytest.raises(PluginError, match="at_wall from 1 on"):
-        refuse_lost_contacts(lying, 1, 2, 2)
+    with pytest.raises(Wrong, match="surfaces that there are not"):
+        refuse_odd(lying, 2, 1, [1])
 
 
 def test_the_domain_is_listed_and_in_the_schema() -> None:

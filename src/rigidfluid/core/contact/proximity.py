@@ -8,7 +8,6 @@ from rigidfluid.core.contact import broad_phase
 from rigidfluid.core.contact.gap_curvature import with_effective_radii
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.mechanics.rigid import angle_between
-from rigidfluid.core.model.contact_results import refuse_lost_contacts
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interactions import acted_in
 from rigidfluid.core.model.system import System
@@ -17,13 +16,8 @@ from rigidfluid.errors import StepRejected
 
 
 def detect(system: System, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
-    """Contacts with gap ≤ ``reach`` [length], as the system's detector finds them; balls are round on any mesh.
-
-    PluginError is raised if they are between unknown surfaces or arrays have a wrong shape, StepRejected if a gap,
-    point or normal is not finite.
-    """
+    """Contacts with gap ≤ ``reach`` [length], as the system's detector finds them; balls are round on any mesh."""
     contacts = system.detector.detect(pose, mesh, reach)
-    refuse_lost_contacts(contacts, len(system.bodies), len(system.surfaces), system.dimension)
     contacts = system.detection.on_shapes(contacts, pose)
     if any(interaction.law.film for interaction in system.interactions):
         return with_effective_radii(contacts, system.bodies, system.walls, pose)

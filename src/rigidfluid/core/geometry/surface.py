@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
+from typing import ClassVar
 
 import numpy as np
 
+from rigidfluid.core.geometry.answers import corners, curvature, instance, optional, rows
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.guarded import Guarded, gives
 
 _STEP = 1e-6
 """Step of central differences, over the size of the surface."""
@@ -15,7 +18,7 @@ _ALONG_AN_AXIS = 1e-14
 """A unit normal whose other components are below this lies along an axis."""
 
 
-class Surface(ABC):
+class Surface(metaclass=Guarded):
     """A closed or open surface between a solid and the fluid.
 
     Distances are positive in the fluid and normals point into it: out of a body, and into the domain from its boundary.
@@ -23,37 +26,46 @@ class Surface(ABC):
     then takes points and distances.
     """
 
+    kind: ClassVar[str] = "surface"
+
     @abstractmethod
+    @gives(rows(lambda _, points: points.shape))
     def closest_point(self, points: FloatArray) -> FloatArray:
         """Nearest points of the surface, (N, d) for ``points`` (N, d) [length]."""
 
     @abstractmethod
+    @gives(rows(lambda _, points: points.shape[:1]))
     def signed_distance(self, points: FloatArray) -> FloatArray:
         """Distance to the surface, (N,), > 0 in the fluid, for ``points`` (N, d) [length]."""
 
     @property
     @abstractmethod
+    @gives(corners)
     def bounds(self) -> tuple[FloatArray, FloatArray]:
         """Lower and upper corner of the box around the surface, (d,) each [length]."""
 
     @property
+    @gives(optional(instance(lambda: Plane)))
     def plane(self) -> Plane | None:
         """The plane that the surface lies in if it is flat, else None."""
         return None
 
     @property
+    @gives(optional(curvature))
     def radius(self) -> float | None:
         """Radius of curvature if it is the same everywhere: r > 0 of a ball, r < 0 of a round hollow around the fluid,
         infinite of a plane; else None [length]."""
         return None
 
     @property
+    @gives(optional(rows(lambda part: (len(part.bounds[0]),), positive=True)))
     def semi_axes(self) -> FloatArray | None:
         """Semi-axes (d,) along the axes of its frame if the surface is an ellipsoid's or a ball's, else None
         [length]."""
         return None
 
     @property
+    @gives(optional(curvature))
     def least_radius(self) -> float | None:
         """Smallest radius of curvature |R| where it is known: c²/a of an ellipsoid of longest semi-axis a and shortest
         c, infinite of a plane; else None [length]."""
@@ -61,6 +73,7 @@ class Surface(ABC):
             return abs(self.radius)
         return None if self.semi_axes is None else float(self.semi_axes.min() ** 2 / self.semi_axes.max())
 
+    @gives(rows(lambda _, points: points.shape))
     def normal(self, points: FloatArray) -> FloatArray:
         """Unit normals into the fluid, (N, d), at the closest points of ``points`` (N, d).
 

@@ -3,21 +3,25 @@ ground."""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
+from rigidfluid.core.geometry.answers import rows
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.guarded import Guarded, gives
+from rigidfluid.core.joints.joint_answers import column, directions, levers, misfit
 from rigidfluid.core.joints.markers import MarkerPair, PlacedPair, add_relative_rows
 
 
 @dataclass(frozen=True)
-class Constraint(ABC):
+class Constraint(metaclass=Guarded):
     """Rows on the motion of the first marker relative to the second, E (v₁ - v₂) + A (ω₁ - ω₂) + compliance · force =
     rate, with v the velocities of the points; rigid, and at rate zero, unless said otherwise."""
 
+    kind: ClassVar[str] = "constraint"
     joins_points: ClassVar[bool] = False
     """Whether the misfit is by how much the points are apart that it holds together [length]."""
 
@@ -25,23 +29,28 @@ class Constraint(ABC):
     markers: MarkerPair
 
     @abstractmethod
+    @gives(directions)
     def directions(self, at: PlacedPair) -> tuple[FloatArray, FloatArray]:
         """Matrices E (r, d) and A (r, k) with the markers at ``at``."""
 
     @abstractmethod
+    @gives(misfit)
     def misfit(self, at: PlacedPair, time: float) -> FloatArray:
         """Constraint violation c(q) (r,), empty for dampers; its rate is that of the rows where it is zero [length |
         rad]."""
 
     @property
     @abstractmethod
+    @gives(column)
     def compliance(self) -> FloatArray:
         """Compliance of each row (r,), zero for rigid rows, 1/damping for those of dampers."""
 
+    @gives(rows(lambda part, time: part.compliance.shape))
     def rate(self, time: float) -> FloatArray:
         """Prescribed rate of each row (r,) [length/time | rad/time]."""
         return np.zeros_like(self.compliance)
 
+    @gives(levers)
     def levers(self, at: PlacedPair) -> FloatArray:
         """Levers (2, d, k), about both centres of mass, of the points whose velocities v are: the markers', unless said
         otherwise [length]."""

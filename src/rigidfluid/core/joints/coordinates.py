@@ -2,36 +2,43 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Iterable
 from math import inf, tau
-from typing import ClassVar, Protocol
+from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 
+from rigidfluid.core.geometry.answers import number
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.guarded import Guarded, gives
+from rigidfluid.core.joints.joint_answers import directions, levers
 from rigidfluid.core.joints.markers import PlacedPair
 
 
-class Coordinate(ABC):
+class Coordinate(metaclass=Guarded):
     """A number that tells where the first marker is seen from the second, zero at the start.
 
     Springs, dampers and drives of a joint act on it, and ``joints.csv`` has a column of its ``name``, in the ``unit``.
     Differences are taken without whole periods, if it is the same again after a ``period``, as an angle is.
     """
 
+    kind: ClassVar[str] = "coordinate"
     name: ClassVar[str]
     unit: ClassVar[str]
     period: ClassVar[float] = inf
 
     @abstractmethod
+    @gives(number())
     def value(self, at: PlacedPair) -> float:
         """Value with the markers at ``at`` [unit]."""
 
     @abstractmethod
+    @gives(directions)
     def directions(self, at: PlacedPair) -> tuple[FloatArray, FloatArray]:
         """Matrices E (1, d) and A (1, k) of its rate E (v₁ - v₂) + A (ω₁ - ω₂), v the velocities of the points."""
 
+    @gives(levers)
     def levers(self, at: PlacedPair) -> FloatArray:
         """Levers (2, d, k), about both centres of mass, of the points whose velocities v are: the markers', unless said
         otherwise [length]."""
@@ -71,6 +78,7 @@ class Displacement(Coordinate):
         return at.levers_at_first
 
 
+@runtime_checkable
 class Drive(Protocol):
     """A coordinate as a function of time; ``period``: after that it repeats itself, None where it does not [time]."""
 

@@ -9,7 +9,9 @@ from typing import ClassVar
 
 import numpy as np
 
+from rigidfluid.core.geometry.answers import rows, several
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.guarded import gives
 from rigidfluid.core.joints.constraints import Constraint
 from rigidfluid.core.joints.coordinates import Coordinate, Drive
 from rigidfluid.core.joints.markers import MarkerPair
@@ -32,6 +34,7 @@ class Joint(SpatialPart):
         2 or 3.
     """
 
+    kind: ClassVar[str] = "joint"
     needs_point: ClassVar[bool] = False
     """Whether a scene has to say where it is; else it is at the first body's centre of mass if the scene does not."""
     coordinate: Coordinate | None = None
@@ -41,12 +44,14 @@ class Joint(SpatialPart):
     """Drive of the coordinate; None where it is free."""
 
     @property
+    @gives(rows(lambda part: (part.dimension, part.dimension)))
     def axes(self) -> FloatArray:
         """Axes (d, d) of both markers in space at the start, right-handed unit vectors in columns; those of space
         unless said otherwise. Angles are about the last, displacements along it [1]."""
         return np.eye(self.dimension)
 
     @abstractmethod
+    @gives(several(lambda: Constraint, least=1))
     def constraints(self, name: str, markers: MarkerPair) -> Sequence[Constraint]:
         """Constraints that hold, drive and damp the first marker, seen from the second.
 
@@ -63,6 +68,7 @@ class Joint(SpatialPart):
             One or more.
         """
 
+    @gives(several(lambda: Spring))
     def springs(self, markers: MarkerPair) -> Sequence[Spring]:
         """Springs between the ``markers``; none unless said otherwise."""
         return ()

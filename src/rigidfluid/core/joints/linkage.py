@@ -80,6 +80,7 @@ class JointLinkage:
             [(one.first, one.second) for one in joints], [one.body for one in ground]
         )
         self.driven = motions.driven or bool(self._prescribed.any()) or bool(drives)
+        self.misfit(motions.pose, 0.0)  # so that a constraint that cannot answer is named before the first step
         refuse_void(self._constraints, self._carrier, self._prescribed)
         rigid = self._rigid(self.links(motions.pose, 0.0).rows)
         refuse_redundant(self._constraints, self._mass_weighted_rows(rigid, motions.pose))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from rigidfluid.core.mechanics.rigid import rotation_between
 from rigidfluid.core.model.types import Pose, Wrench
 
 
+@runtime_checkable
 class Spring(Protocol):
     """Stores energy in a pose of the n bodies."""
 

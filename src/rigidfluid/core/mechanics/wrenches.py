@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.model.part_results import refuse_lost_forces
 from rigidfluid.core.model.types import Contacts, Pose, Twist, Wrench
 
 
@@ -14,13 +13,12 @@ def contact_wrench(contacts: Contacts, force_on_a: FloatArray, pose: Pose) -> Wr
     x) × F; the wrench on walls is dropped.
 
     The common point X keeps the total angular momentum, for forces along the surfaces as well. ``force_on_a`` is F on
-    ``body_a`` (m, d) [force]; PluginError or StepRejected is raised if it has another shape or is not finite.
+    ``body_a`` (m, d) [force].
     """
     wrench = nothing(pose)
     if len(contacts):
         from rigidfluid.core.mechanics.contact_sum import accumulate
 
-        refuse_lost_forces(contacts, force_on_a)
         a, b = (contacts.body_a, contacts.point_a), (contacts.body_b, contacts.point_b)
         accumulate(wrench.force, wrench.torque, pose.position, *a, *b, force_on_a)
     return wrench

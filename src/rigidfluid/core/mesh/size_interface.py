@@ -6,15 +6,15 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
+from typing import ClassVar
 
-import numpy as np
-
+from rigidfluid.core.geometry.answers import rows
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.guarded import gives
 from rigidfluid.core.mesh.flow import AtRest, Flow
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.model.interfaces import SpatialPart
-from rigidfluid.errors import PluginError
 
 
 class SizeField(SpatialPart):
@@ -32,7 +32,10 @@ class SizeField(SpatialPart):
         2 or 3.
     """
 
+    kind: ClassVar[str] = "size field"
+
     @abstractmethod
+    @gives(rows(lambda _, points, around, flow: points.shape[:1], positive=True))
     def edge_length(self, points: FloatArray, around: FluidDomain, flow: Flow) -> FloatArray:
         """Longest edge wanted at each point [length].
 
@@ -54,22 +57,10 @@ class SizeField(SpatialPart):
 
 def with_fields(sizes: Sizes, fields: Sequence[SizeField], around: FluidDomain, flow: Flow) -> Sizes:
     """Sizes with what ``fields`` ask for ``around`` the bodies at this moment of the ``flow``."""
-    asked = (partial(_asked_length, field=field, around=around, flow=flow) for field in fields)
+    asked = (partial(field.edge_length, around=around, flow=flow) for field in fields)
     return replace(sizes, asked=(*sizes.asked, *asked))
 
 
 def with_fields_at_rest(sizes: Sizes, fields: Sequence[SizeField], around: FluidDomain) -> Sizes:
     """Sizes with what ``fields`` ask for in the first mesh, in a fluid at rest."""
     return with_fields(sizes, fields, around, AtRest(len(around.bodies), around.domain.dimension))
-
-
-def _asked_length(points: FloatArray, field: SizeField, around: FluidDomain, flow: Flow) -> FloatArray:
-    """Edge lengths (m,) by a ``field``; raises PluginError for what is no length."""
-    lengths = np.asarray(field.edge_length(points, around, flow))
-    right = np.isfinite(lengths) & (lengths > 0.0)
-    if lengths.shape != (len(points),) or not right.all():
-        found = f"edge lengths of shape {lengths.shape}, {np.count_nonzero(~right)} of them not positive and finite"
-        allowed = f"positive and finite lengths of shape {(len(points),)}"
-        remedy = "Mend the size field; SizeFieldContract in rigidfluid.testing shows more."
-        raise PluginError(f"mesh.field {field.name!r}", found, allowed, remedy)
-    return lengths

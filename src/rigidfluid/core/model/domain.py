@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from copy import copy
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from rigidfluid.core.geometry.answers import anything, instance, number, optional, several
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.facets import Facets
+from rigidfluid.core.geometry.guarded import gives
 from rigidfluid.core.geometry.piece import Piece
+from rigidfluid.core.model import part_answers as parts
 from rigidfluid.core.model.interfaces import SpatialPart
 
 
@@ -30,35 +33,42 @@ class Domain(SpatialPart):
         2 or 3.
     """
 
+    kind: ClassVar[str] = "domain"
     periodic: tuple[tuple[int, int], ...] = ()
     """Pairs of flat pieces, by their numbers, that are periodic: what leaves by one comes in by the other.
     The second is the first displaced; their facets match, and stay."""
 
     @property
     @abstractmethod
+    @gives(parts.pieces)
     def pieces(self) -> tuple[Piece, ...]:
         """The pieces of the boundary, each with a name of its own, in the order of their surface numbers."""
 
     @property
     @abstractmethod
+    @gives(parts.extent)
     def extent(self) -> tuple[FloatArray, FloatArray]:
         """Lower and upper corner of the box around the domain, (d,) each [length]."""
 
     @property
     @abstractmethod
+    @gives(number(0.0))
     def volume(self) -> float:
         """Exact volume (area in 2D), without bodies [length^d]."""
 
     @abstractmethod
+    @gives(parts.truths)
     def contains(self, points: FloatArray) -> BoolArray:
         """Whether each of ``points`` (N, d) is inside, (N,); on the boundary either may be said."""
 
+    @gives(anything)
     def cad_shape(self, unit: float) -> Any:
         """The domain as a ``netgen.occ`` face (2D) or solid (3D), all its lengths over ``unit``, whose edges (2D) or
         faces (3D) have the names of the pieces that they lie on; None of one made of `facets`."""
         return None
 
     @property
+    @gives(optional(parts.facets))
     def facets(self) -> Facets | None:
         """The facets that the boundary is made of, marked by the number of their piece; None where there is a
         `cad_shape`."""
@@ -70,12 +80,14 @@ class Domain(SpatialPart):
         other.periodic = pairs
         return other
 
+    @gives(optional(instance(lambda: Domain)))
     def between(self, axis: int, lower: float, upper: float) -> Domain | None:
         """The part with ``lower`` ≤ x ≤ ``upper`` along an ``axis`` [length], with pieces of the same names in the same
         order, two of them flat across the axis; None of a domain that is not the same all along it."""
         return None
 
     @property
+    @gives(several(lambda: str))
     def remarks(self) -> tuple[str, ...]:
         """Remarks for a user on how it was read or made; each is a sentence without its full stop."""
         return ()

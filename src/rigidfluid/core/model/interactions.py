@@ -11,7 +11,6 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interfaces import ForceLaw, PartOptions
-from rigidfluid.core.model.part_results import refuse_lost_forces, refuse_shape
 from rigidfluid.core.model.types import Contacts, Motion
 
 Between = Literal["all", "walls", "pairs"]
@@ -104,12 +103,7 @@ class SumOfLaws(ForceLaw):
         self, contacts: Contacts, total: FloatArray, asked: Callable[[ForceLaw, Contacts, BoolArray], FloatArray]
     ) -> FloatArray:
         for interaction, some, chosen in self._shares(contacts):
-            key, rows = f"{interaction.field}.law", asked(interaction.law, some, chosen)
-            if total.ndim == 2:
-                refuse_lost_forces(some, rows, key)
-            else:
-                refuse_shape(key, "energies or stiffnesses", rows, some.gap.shape, "contact")
-            total[chosen] += rows
+            total[chosen] += asked(interaction.law, some, chosen)
         return total
 
     def _shares(self, contacts: Contacts) -> Iterator[tuple[Interaction, Contacts, BoolArray]]:

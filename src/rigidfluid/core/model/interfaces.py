@@ -8,7 +8,7 @@ reads from its table of the scene file (``Options``). Importing the class must n
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
@@ -19,11 +19,15 @@ from scipy.sparse import csc_array
 
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.fluid.material import Material, Newtonian
+from rigidfluid.core.geometry.answers import anything, instance, number, optional, rows, several
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.facets import Facets
+from rigidfluid.core.geometry.guarded import Guarded, gives
 from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.geometry.surface import Surface
 from rigidfluid.core.geometry.wall import Wall
+from rigidfluid.core.model import backend_answers as backends
+from rigidfluid.core.model import part_answers as parts
 from rigidfluid.core.model.extension import Extension, FactorisedExtension
 from rigidfluid.core.model.ranks import ALONE, Ranks
 from rigidfluid.core.model.types import (
@@ -49,9 +53,11 @@ class PartOptions(BaseModel, metaclass=TableType):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
 
-class Part(ABC):
-    """Replaceable part: its name, the packages it requires and its options."""
+class Part(metaclass=Guarded):
+    """Replaceable part: its name, the packages it requires and its options. A ``kind`` of parts says with `gives` what
+    its methods give; whoever gives anything else is named."""
 
+    kind: ClassVar[str]
     name: ClassVar[str]
     requires: ClassVar[Mapping[str, str]] = {}
     Options: ClassVar[type[PartOptions]] = PartOptions
@@ -59,6 +65,8 @@ class Part(ABC):
 
 class SpatialPart(Part):
     """A part of so many space dimensions, with the options that its table gives it."""
+
+    dimension: int
 
     def __init__(self, options: PartOptions, dimension: int) -> None:
         self.options = options
@@ -76,18 +84,23 @@ class Body(Surface, SpatialPart):
         2 or 3.
     """
 
+    kind: ClassVar[str] = "body"
+
     @property
     @abstractmethod
+    @gives(number(0.0))
     def volume(self) -> float:
         """Exact volume of the shape (area in 2D) [length^d]."""
 
     @property
     @abstractmethod
+    @gives(parts.inertia)
     def unit_inertia(self) -> FloatArray:
         """Inertia over mass, ∫(|r|² I - r rᵀ) / volume, shape (k, k) [length²]."""
 
     @property
     @abstractmethod
+    @gives(number(0.0))
     def bounding_radius(self) -> float:
         """Radius of the smallest ball about the origin that holds the shape [length]."""
 
@@ -98,30 +111,36 @@ class Body(Surface, SpatialPart):
         return -corner, corner
 
     @property
+    @gives(optional(number(0.0)))
     def radius(self) -> float | None:
         """The radius if the shape is a ball, else None [length]."""
         return None
 
     @property
+    @gives(optional(rows(lambda part: (part.dimension,), positive=True)))
     def semi_axes(self) -> FloatArray | None:
         """Semi-axes (d,) along the axes of its frame if the shape is an ellipsoid or a ball, else None [length]."""
         return None if self.radius is None else np.full(self.dimension, self.radius)
 
     @abstractmethod
+    @gives(parts.points)
     def sample_surface(self, count: int) -> FloatArray:
         """Points spread over the surface, about ``count`` of them, (N, d) [length]."""
 
+    @gives(anything)
     def cad_shape(self, unit: float) -> Any:
         """The shape as a ``netgen.occ`` face (2D) or solid (3D), all its lengths over ``unit``, for the mesh generator;
         None with `facets`."""
         return None
 
     @property
+    @gives(optional(parts.facets))
     def facets(self) -> Facets | None:
         """The facets that the shape is made of, in its own frame; None of a smooth one, which has a `cad_shape`."""
         return None
 
     @property
+    @gives(rows(lambda part: (part.dimension,)))
     def given_centre(self) -> FloatArray:
         """Centre of mass in the frame that the options are in, (d,) [length]."""
         return np.zeros(self.dimension)
@@ -147,29 +166,35 @@ class Mechanism(SpatialPart):
         2 or 3.
     """
 
+    kind: ClassVar[str] = "mechanism"
     driven: bool = False
     """Whether the placement changes with time; else it is asked for once."""
 
     @property
     @abstractmethod
+    @gives(parts.components)
     def components(self) -> Sequence[Component]:
         """Components, m of them; the type of each shape is one that a scene can name."""
 
     @abstractmethod
+    @gives(parts.placement)
     def placement(self, time: float) -> Pose:
         """Pose of the components in the mechanism's own frame, whose origin may be anywhere: m positions [length] and
         orientations [rad | 1]."""
 
+    @gives(parts.rate)
     def rate(self, time: float) -> Twist:
         """Rate of the placement, in the same frame: velocities [length/time] and angular velocities [rad/time]."""
         m, k = len(self.components), 1 if self.dimension == 2 else 3
         return Twist(np.zeros((m, self.dimension)), np.zeros((m, k)))
 
     @property
+    @gives(optional(number(0.0)))
     def period(self) -> float | None:
         """Time after which the placement repeats itself; None where it does not [time]."""
         return None
 
+    @gives(parts.later)
     def next_corner(self, time: float) -> float:
         """The first time after this at which the rate jumps; infinite where it does not [time].
 
@@ -192,6 +217,9 @@ class Detector(Part):
         The walls that repel; a detector that cannot take a wall of their shape raises SceneError.
     """
 
+    kind: ClassVar[str] = "detector"
+    bodies: tuple[Body, ...]
+    walls: tuple[Wall, ...]
     needs_mesh: ClassVar[bool] = False
     """Whether it looks at the fluid's mesh; then it is never asked without one."""
     cost: ClassVar[float] = math.inf
@@ -203,6 +231,7 @@ class Detector(Part):
         self.walls = tuple(walls)
 
     @classmethod
+    @gives(optional(instance(lambda: str)))
     def exact_for(cls, bodies: Sequence[Body], pieces: Sequence[Piece]) -> str | None:
         """Reason why gaps between these shapes are exact, with a mesh exact to its facets; None if they may not be.
 
@@ -222,11 +251,13 @@ class Detector(Part):
         """
         return None
 
+    @gives(number(0.0, infinite=True))
     def preferred_reach(self, law_range: float) -> float:
         """The reach that the loop should ask for with a law of this range [length]; infinite if it costs little."""
         return math.inf
 
     @abstractmethod
+    @gives(parts.contacts)
     def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
         """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b); reach may be infinite."""
 
@@ -246,6 +277,8 @@ class ForceLaw(Part):
         What the contacts must hold, for laws that choose their strength by it.
     """
 
+    kind: ClassVar[str] = "force law"
+    range: float
     balls_only: ClassVar[bool] = False
     film: bool = False
     """Whether it resists as a film that no mesh resolves: it reads `Contacts.effective_radius`, which balls, ellipses
@@ -265,22 +298,27 @@ class ForceLaw(Part):
         self.range = range
 
     @property
+    @gives(parts.ranges)
     def ranges(self) -> tuple[float, ...]:
         """The gaps where it begins, in order: its range, and those of its parts where it has several [length]."""
         return (self.range,)
 
     @abstractmethod
+    @gives(rows(lambda _, contacts: contacts.normal.shape, shorter=True))
     def force(self, contacts: Contacts) -> FloatArray:
         """Force F = -dU/dgap · n on ``body_a``, (m, d) [force]."""
 
     @abstractmethod
+    @gives(parts.energies)
     def energy(self, contacts: Contacts) -> FloatArray:
         """Potential energy U of each contact, (m,), zero at range [energy]."""
 
     @abstractmethod
+    @gives(rows(lambda _, contacts: contacts.gap.shape, shorter=True))
     def stiffness(self, contacts: Contacts) -> FloatArray:
         """-d(F·n)/dgap of each contact, (m,) [force/length]."""
 
+    @gives(rows(lambda _, contacts, motion: contacts.normal.shape, shorter=True))
     def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
         """Further force on ``body_a`` that the relative velocity gives, (m, d), of power ≤ 0 [force]."""
         return np.zeros_like(contacts.normal)
@@ -300,6 +338,7 @@ class FluidBackend(Part):
         The fluid's equations and boundary conditions; None where there is no fluid.
     """
 
+    kind: ClassVar[str] = "fluid backend"
     wet: ClassVar[bool] = True
     """Whether there is a fluid around the bodies, on a mesh; else it gets meshes without cells."""
     materials: ClassVar[tuple[type[Material], ...]] = (Newtonian,)
@@ -322,6 +361,7 @@ class FluidBackend(Part):
         self.options = options
         self.problem = problem
 
+    @gives(anything)
     def extension(self, mesh: Mesh, stiffness: csc_array, held: BoolArray) -> Extension:
         """Solver of Σ stiffness · u = 0 at vertices that are not ``held`` (N,), the sum over all ranks.
 
@@ -330,12 +370,14 @@ class FluidBackend(Part):
         return FactorisedExtension(stiffness, held)
 
     @abstractmethod
+    @gives(backends.state_and_energy)
     def initial(self, mesh: Mesh, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
         """Fluid at the start, by `FluidProblem.initial`, and its kinetic energy [energy].
 
         A fluid at "rest" was so until its bodies were set in motion with ``twist``.
         """
 
+    @gives(optional(backends.struck))
     def struck(self, mesh: Mesh, pose: Pose, twist: Twist, step: Step) -> tuple[FluidState, float, Twist] | None:
         """The same for a fluid at rest when faces were set in motion as well, with what they have at time 0; and the
         twists of the motions then, free ones by their masses and the fluid's.
@@ -346,18 +388,22 @@ class FluidBackend(Part):
         return None
 
     @abstractmethod
+    @gives(backends.advance)
     def advance(self, fluid: FluidState, mesh: Mesh, step: Step) -> Advance:
         """Take one step from ``fluid`` on ``mesh`` to ``step.points``; raises StepRejected where it cannot."""
 
     @abstractmethod
+    @gives(backends.response)
     def response(self, fluid: FluidState, mesh: Mesh, step: Step, impulses: FloatArray) -> Response:
         """Impulse response: the twists that each of c ``impulses`` (c, n, d+k) on the free bodies gives in this
         ``step`` [force·time | force·length·time]; asked of backends with a mesh alone."""
 
     @abstractmethod
+    @gives(backends.state_and_energy)
     def transfer(self, fluid: FluidState, old: Mesh, new: Mesh) -> tuple[FluidState, float]:
         """The state on another mesh of the same domain at the same time, and the kinetic energy lost [energy]."""
 
+    @gives(number(shorter=True))
     def prediction_error(self, before: FluidState, after: FluidState, mesh: Mesh, extrapolation: FloatArray) -> float:
         """Kinetic energy of the difference between a velocity and its extrapolation, ½ρ∫|uⁿ⁺¹ - e₀uⁿ - e₁uⁿ⁻¹|².
 
@@ -368,27 +414,33 @@ class FluidBackend(Part):
         return 0.0
 
     @abstractmethod
+    @gives(backends.fields)
     def fields(self, fluid: FluidState, mesh: Mesh) -> Fields:
         """Velocity and pressure for output."""
 
     @abstractmethod
+    @gives(backends.probes)
     def probe(self, fluid: FluidState, mesh: Mesh, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Velocity (N, d) and pressure (N,) at ``points`` (N, d); outside the mesh the nearest cell's values."""
 
     @abstractmethod
+    @gives(number(-1.0))
     def unknowns(self, mesh: Mesh, prescribed: BoolArray) -> int:
         """Number of unknowns of one step on this mesh, with the twists of the ``prescribed`` motions (N,)
         prescribed."""
 
+    @gives(optional(instance(lambda: SolverCost)))
     def solver_cost(self, cells: float, facets: float) -> SolverCost | None:
         """Expected cost of steps on a mesh of about so many ``cells``, and ``facets`` on its boundary; None where the
         backend does not know."""
         return None
 
     @abstractmethod
+    @gives(anything)
     def forget(self) -> None:
         """Drop every cache, so that the next step depends on the given state alone."""
 
+    @gives(backends.state)
     def memory(self) -> FluidState:
         """Data on which the next step depends besides the given state, to the last bit: named arrays for a checkpoint.
 
@@ -397,15 +449,18 @@ class FluidBackend(Part):
         self.forget()
         return {}
 
+    @gives(anything)
     def recall(self, memory: FluidState, mesh: Mesh) -> None:
         """Go on from what `memory` gave, here or in another process, when the state was on this ``mesh``."""
         self.forget()
 
+    @gives(backends.state)
     def joined(self, states: Sequence[FluidState], parts: Sequence[Mesh], mesh: Mesh) -> FluidState:
         """The state on a whole ``mesh`` from those on all its ``parts``; asked of the root alone, if there
         is a `state_format`."""
         raise NotImplementedError
 
+    @gives(several(lambda: Mapping))
     def cut(self, fluid: FluidState, mesh: Mesh, parts: Sequence[Mesh]) -> list[FluidState]:
         """The states on all ``parts`` of a whole ``mesh`` from the one there, to the last bit what `joined` takes."""
         raise NotImplementedError

@@ -23,7 +23,6 @@ _TABLES = {
 }
 
 
-
 @dataclass(frozen=True)
 class Files:
     """Files of one purpose: ``shown`` as documentation lists them, a ``pattern`` of their paths in the folder, when

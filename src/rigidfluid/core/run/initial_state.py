@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from rigidfluid.core.contact.proximity import detect_contacts_and_gaps
+from rigidfluid.core.contact.spot_check import spot_check
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.mesh.updater import Updater
 from rigidfluid.core.model.energy import Ledger, Power
@@ -20,9 +21,11 @@ start at once at most half of the time since."""
 
 
 def initial_state(system: System, mesh_updater: Updater, clock: Clock, starts_short: bool = False) -> State:
-    """The state at time zero, on its first mesh; raises MeshError where there is none."""
+    """The state at time zero, on its first mesh; raises MeshError where there is none,
+    PluginError where a detector or law is not what it should be."""
     zero = nothing(system.pose)
     mesh = mesh_updater.first_mesh()
+    spot_check(system, system.pose, mesh)
     contacts, gaps = detect_contacts_and_gaps(system, system.pose, mesh)
     motions = system.motions
     stored = stored_energy(system, contacts, motions.pose, 0.0)

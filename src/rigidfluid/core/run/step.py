@@ -19,7 +19,7 @@ from rigidfluid.core.mechanics.rigid import kinetic_energy, rotation_between
 from rigidfluid.core.mechanics.wrenches import flat, power, wrench_of, wrench_sum
 from rigidfluid.core.mesh.updater import Updater
 from rigidfluid.core.model.energy import Ledger, Power, Work
-from rigidfluid.core.model.part_results import refuse_lost_advance, refuse_lost_pose, refuse_no_number
+from rigidfluid.core.model.part_results import refuse_lost_pose
 from rigidfluid.core.model.state import LinkLoad, MotionState, Past, State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Advance, Contacts, Mesh, Pose, Step, Twist, Wrench
@@ -67,7 +67,6 @@ def attempt(tools: Tools, state: State, level: int, path: BodyStep, provisional:
         step = tools.scheme.prepare(step_to(system, state, end, place.mesh.geometry), state, path)
         step = replace(step, provisional=True) if provisional else step
         advance = system.backend.advance(state.fluid, state.mesh, step)
-        refuse_lost_advance(system.surfaces, advance, state.pose, len(system.motions.prescribed))
     twist = step.kinematics.component_twist(advance.twist)
     after = BodiesAfter(path.pose, twist, end.size)
     candidate = replace(
@@ -170,9 +169,7 @@ def contact_energy(system: System, contacts: Contacts) -> float:
     """Energy stored in the contacts [energy]."""
     if system.law is None or len(contacts) == 0:
         return 0.0
-    energy = system.law.energy(contacts)
-    refuse_no_number("contacts", "energy", energy, "contact.law")
-    return float(np.sum(energy))
+    return float(np.sum(system.law.energy(contacts)))
 
 
 def _power(system: System, advance: Advance, step: Step, motions: Pose) -> Power:

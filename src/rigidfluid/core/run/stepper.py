@@ -10,6 +10,7 @@ import numpy as np
 
 from rigidfluid.core.contact.body_step import BodyStep, first_step_again
 from rigidfluid.core.contact.gap_changes import CLOSEST_APPROACH, WIDEST_OPENING
+from rigidfluid.core.contact.spot_check import is_due, spot_check
 from rigidfluid.core.coupling.scheme import Scheme
 from rigidfluid.core.coupling.schemes import scheme_of
 from rigidfluid.core.mesh.updater import Updater
@@ -109,6 +110,8 @@ class Stepper:
                     raise stuck(self.system, state, rejection, time, shortest) from rejection
             else:
                 self.counts.unsettled += not agreed
+                if is_due(new.count):
+                    spot_check(self.system, new.pose, new.mesh)
                 return with_cause(self.system, self._clock, state, new)
 
     def _judged(self, state: State, candidate: State) -> State:

@@ -13,7 +13,6 @@ from rigidfluid.core.contact.detection import detection_by
 from rigidfluid.core.nested.placing import check_orientation
 from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.core.setup.along_strokes import refuse_overlap_along
-from rigidfluid.core.setup.body_sizes import refuse_lost_body
 from rigidfluid.core.setup.boundary_checks import check_boundary, check_inflow, check_oblique, check_periodic
 from rigidfluid.core.setup.contact_laws import check_laws
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
@@ -46,8 +45,6 @@ def check_model(model: Model) -> None:
         _check_dimension(body.shape, model.dimension, f"body.{number}")
         _check_vectors(body, model.dimension, f"body.{number}")
         _check_control(body, f"body.{number}")
-    for number, shape in enumerate(model.shapes):
-        refuse_lost_body(shape, f"body.{number}")
     _check_gravity(model)
     _check_stepping(model)
     _check_assemblies(model.bodies)

@@ -269,12 +269,6 @@ def test_a_law_for_smooth_bodies_is_for_those_it_names() -> None:
         scene_from_dict(tables(FILM | {"names": ["left_disk", "square"]}, body=body))
 
 
-def test_forces_of_another_shape_name_the_table(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(LubricationLaw, "damping", lambda self, contacts, motion: contacts.gap)
-    with pytest.raises(PluginError, match=r"interaction.1.law: found forces of shape"):
-        run(NORMAL, FILM)
-
-
 def test_an_override_reaches_an_entry_of_the_list() -> None:
     data = tables(NORMAL, FILM)
     override(data, ["interaction.1.range=0.015", "interaction.0.between=pairs"])

@@ -1,0 +1,139 @@
+"""Spot checks of the detector against a naive search: no answer alone shows that it has not seen a contact."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rigidfluid.core.contact.proximity import detect
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.guarded import told_of
+from rigidfluid.core.geometry.surface import Surface
+from rigidfluid.core.geometry.wrong import Wrong
+from rigidfluid.core.mechanics.rigid import rotation_matrices
+from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import Mesh, Pose
+
+MOST_PAIRS = 3
+"""Largest number of pairs that are looked at, those that seem nearest."""
+
+_SAMPLES = 100
+"""Points tried on the surface of a body."""
+
+_PROJECTIONS = 10
+"""Number of ways to the other surface and back, each of which brings two points nearer to each other."""
+
+_ROUNDING = 1e-6
+"""Greatest error of an exact detector, over the bounding radius."""
+
+_ROUGH = 0.1
+"""The same of one that does not say that it is exact."""
+
+
+class _Side(NamedTuple):
+    """A surface by its number, where it stands, and the most that contact points may lie off it [length]."""
+
+    number: int
+    shape: Surface
+    position: FloatArray
+    rotation: FloatArray
+    off: float
+
+    def distance(self, points: FloatArray) -> FloatArray:
+        return self.shape.signed_distance((points - self.position) @ self.rotation)
+
+    def closest(self, points: FloatArray) -> FloatArray:
+        foot = self.shape.closest_point((points - self.position) @ self.rotation)
+        return np.asarray(self.position + foot @ self.rotation.T)
+
+    def samples(self) -> FloatArray:
+        assert isinstance(self.shape, Body)
+        return np.asarray(self.position + self.shape.sample_surface(_SAMPLES) @ self.rotation.T)
+
+
+def check_detector(system: System, pose: Pose, mesh: Mesh | None) -> None:
+    """Raise PluginError unless the detector finds the nearest pairs at a ``pose``, with points on both surfaces, and
+    none farther apart than two points of a naive search; on a ``mesh`` as far as facets lie off the surfaces."""
+    exact = system.detection.on_mesh or system.detector.exact_for(system.bodies, system.domain.pieces)
+    for pair in _nearest_pairs(system, pose):
+        error = (_ROUNDING if exact else _ROUGH) * system.bodies[pair[0]].bounding_radius
+        a, b = (_side(system, pose, mesh, number, error) for number in pair)
+        apart = _searched(a, b)
+        reach = apart + a.off + b.off
+        if apart > 0.0 and (reach <= system.reach or not system.detection.on_mesh):
+            _compare(system, pose, mesh, (a, b), reach)
+
+
+def _compare(system: System, pose: Pose, mesh: Mesh | None, sides: tuple[_Side, _Side], reach: float) -> None:
+    found, (a, b) = detect(system, pose, mesh, reach), sides
+    rows = np.flatnonzero((found.body_a == a.number) & (found.body_b == b.number))
+    names = f"{system.surfaces[a.number]} and {system.surfaces[b.number]}"
+    if len(rows) == 0:
+        _refuse_contradictory(sides)
+        wrong = Wrong(f"no contact of {names}", f"one with a gap of {reach:.6g} at most, which a naive search finds")
+        raise told_of(system.detector, "detect", wrong)
+    for side, points in ((a, found.point_a[rows]), (b, found.point_b[rows])):
+        off = float(np.abs(side.distance(points)).max())
+        if off > side.off:
+            _refuse_contradictory(sides)
+            surface = system.surfaces[side.number]
+            wrong = Wrong(f"a contact of {names} {off:.3g} off {surface}", f"points on it, or {side.off:.3g} off")
+            raise told_of(system.detector, "detect", wrong)
+
+
+def _refuse_contradictory(sides: tuple[_Side, _Side]) -> None:
+    """Raise PluginError for a body whose samples are not on its surface: then the detector may be right."""
+    for side in sides:
+        if isinstance(side.shape, Body):
+            off = float(np.abs(side.distance(side.samples())).max())
+            if off > _ROUNDING * side.shape.bounding_radius:
+                wrong = Wrong(f"points that are {off:.3g} from the surface by its `signed_distance`", "points on it")
+                raise told_of(side.shape, "sample_surface", wrong)
+
+
+def _nearest_pairs(system: System, pose: Pose) -> list[tuple[int, int]]:
+    """Pairs of surfaces whose bounding balls are nearest to each other, the nearest first."""
+    from scipy.spatial import cKDTree
+
+    radii, found = np.array([body.bounding_radius for body in system.bodies]), dict[tuple[int, int], float]()
+    if len(radii) > 1:
+        distance, other = (np.asarray(each)[:, 1] for each in cKDTree(pose.position).query(pose.position, k=2))
+        gap = distance - radii - radii[other]
+        for a in np.argsort(gap)[: 2 * MOST_PAIRS].tolist():  # a pair comes twice
+            found[min(a, int(other[a])), max(a, int(other[a]))] = float(gap[a])
+    for wall in system.walls:
+        gap = wall.shape.signed_distance(pose.position) - radii
+        found[int(np.argmin(gap)), wall.surface] = float(gap.min())
+    return sorted(found, key=lambda pair: found[pair])[:MOST_PAIRS]
+
+
+def _side(system: System, pose: Pose, mesh: Mesh | None, number: int, error: float) -> _Side:
+    """Surface of this number; a contact point lies off it by an ``error`` [length] and by as much as facets do."""
+    count, d = len(system.bodies), system.dimension
+    if number < count:
+        rotation = rotation_matrices(pose.orientation[number : number + 1])[0]
+        side = _Side(number, system.bodies[number], pose.position[number], rotation, error)
+    else:
+        side = _Side(number, system.domain.pieces[number - count].shape, np.zeros(d), np.eye(d), error)
+    if mesh is None or not system.detection.on_mesh:
+        return side
+    middles = mesh.points[mesh.facets[mesh.markers == number]].mean(axis=1)
+    there = mesh.ranks.greatest(len(middles)) > 0
+    depth = mesh.ranks.greatest(np.abs(side.distance(middles)).max(initial=0.0)) if there else np.inf
+    return side._replace(off=error + float(depth))
+
+
+def _searched(a: _Side, b: _Side) -> float:
+    """Distance of two points of both surfaces, that of the surfaces where they are convex; 0 or below where they
+    overlap [length]."""
+    samples = a.samples()
+    distance = b.distance(samples)
+    if distance.min() <= 0.0:
+        return 0.0
+    point = samples[[int(np.argmin(distance))]]
+    for _ in range(_PROJECTIONS):
+        foot = b.closest(point)
+        point = a.closest(foot)
+    return float(np.linalg.norm(point - foot))

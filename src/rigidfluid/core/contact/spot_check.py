@@ -1,0 +1,26 @@
+"""Checks of parts, at times, for what no single answer shows."""
+
+from __future__ import annotations
+
+from rigidfluid.core.contact.detector_check import check_detector
+from rigidfluid.core.contact.law_check import check_laws
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import Mesh, Pose
+
+_EARLY = {1, 4, 16, 64}
+_EVERY = 256
+"""Numbers of steps after which parts are checked: a check takes about as long as a dry step of two bodies."""
+
+
+def is_due(count: int) -> bool:
+    """Whether parts are checked after so many steps, beside the start: after the same ones where a run is taken up
+    again."""
+    return count in _EARLY or count % _EVERY == 0
+
+
+def spot_check(system: System, pose: Pose, mesh: Mesh | None) -> None:
+    """Raise PluginError where the laws or the detector, if it has the ``mesh`` that it needs, are not what they should
+    be."""
+    check_laws(system)
+    if mesh is not None or not system.detection.on_mesh:
+        check_detector(system, pose, mesh)

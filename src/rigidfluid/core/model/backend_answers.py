@@ -1,0 +1,91 @@
+"""Checks of what fluid backends give."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from rigidfluid.core.geometry.answers import refuse_no_number, refuse_other_rows, refuse_other_shape, refuse_others
+from rigidfluid.core.geometry.value_types import told
+from rigidfluid.core.geometry.wrong import Wrong
+from rigidfluid.core.model.types import Advance, Fields, Response, Step, Twist
+
+_POWERS = ("boundary_power", "spurious_flux", "grad_div", "source_power")
+_ENERGIES = ("kinetic_energy", "dissipation", "dissipation_midway", *_POWERS)
+
+
+def state(answer: Any, *_: Any, **__: Any) -> None:
+    """Refuse what is no mapping of names to arrays that a checkpoint can hold."""
+    refuse_others(answer, Mapping)
+    for name, values in answer.items():
+        refuse_others(name, str, "name")
+        if not (isinstance(values, np.ndarray) and values.dtype.kind in "fiub"):
+            raise Wrong(f"{name} {told(values)}", "arrays of numbers")
+
+
+def state_and_energy(answer: Any, *_: Any, **__: Any) -> None:
+    """Refuse what is no state and a kinetic energy."""
+    _refuse_other_length(answer, 2)
+    state(answer[0])
+    refuse_no_number(answer[1], "energy", shorter=True)
+
+
+def struck(answer: Any, part: Any, mesh: Any, pose: Any, twist: Twist, step: Step) -> None:
+    """Refuse what is no state, kinetic energy and twist of all motions."""
+    _refuse_other_length(answer, 3)
+    state_and_energy(answer[:2])
+    _refuse_other_twist(answer[2], step)
+
+
+def advance(answer: Any, part: Any, fluid: Any, mesh: Any, step: Step) -> None:
+    """Refuse what is no result of a step."""
+    refuse_others(answer, Advance)
+    state(answer.fluid)
+    _refuse_other_twist(answer.twist, step)
+    (count, d), k = step.pose.position.shape, step.mass_matrix.shape[1] - step.pose.position.shape[1]
+    refuse_other_rows(answer.hydrodynamic_wrench.force, (count, d), "force", shorter=True)
+    refuse_other_rows(answer.hydrodynamic_wrench.torque, (count, k), "torque", shorter=True)
+    refuse_other_rows(answer.link_force, step.links.rate.shape, "link_force", shorter=True)
+    for name in _ENERGIES:
+        refuse_no_number(getattr(answer, name), name, shorter=True)
+    if answer.stress_power is not None:
+        refuse_no_number(answer.stress_power, "stress_power", shorter=True)
+
+
+def response(answer: Any, part: Any, fluid: Any, mesh: Any, step: Step, impulses: Any) -> None:
+    """Refuse what are no responses to all impulses."""
+    refuse_others(answer, Response)
+    for name in ("inviscid", "viscous"):
+        refuse_other_rows(getattr(answer, name), impulses.shape, name, shorter=True)
+
+
+def fields(answer: Any, *_: Any) -> None:
+    """Refuse what are no fields for output."""
+    refuse_others(answer, Fields)
+    count = len(answer.points)
+    for name in ("points", "velocity", "pressure"):
+        refuse_other_rows(
+            getattr(answer, name), (count, *np.shape(answer.points)[1:])[: 1 + (name != "pressure")], name
+        )
+    refuse_other_shape(answer.cells, np.shape(answer.cells), "cells", "iu")
+
+
+def probes(answer: Any, part: Any, fluid: Any, mesh: Any, points: Any) -> None:
+    """Refuse what is no velocity and pressure at each point."""
+    _refuse_other_length(answer, 2)
+    refuse_other_rows(answer[0], points.shape, "velocity", shorter=True)
+    refuse_other_rows(answer[1], points.shape[:1], "pressure", shorter=True)
+
+
+def _refuse_other_length(answer: Any, length: int) -> None:
+    if not (isinstance(answer, tuple) and len(answer) == length):
+        raise Wrong(told(answer), f"a tuple of {length}")
+
+
+def _refuse_other_twist(twist: Any, step: Step) -> None:
+    refuse_others(twist, Twist, "twist")
+    count, d = len(step.prescribed), step.pose.position.shape[1]
+    refuse_other_rows(twist.velocity, (count, d), "velocity", shorter=True)
+    refuse_other_rows(twist.angular_velocity, (count, step.mass_matrix.shape[1] - d), "angular velocity", shorter=True)
