@@ -342,7 +342,7 @@ def test_what_a_comparison_writes(started: list[tuple[str, bool]], tmp_path: Pat
     assert {difference["largest"] for difference in only["differences"].values()} == {0.0}
     assert only["differences"]["energy"]["body"] is None
     for text in (
-        "pushed beside dry",
+        "pushed compared with dry",
         "0.25",
         "right_disk",
         "wall time per step [s]",
@@ -433,7 +433,7 @@ def test_one_failure_leaves_the_others(started: list[tuple[str, bool]], tmp_path
     assert result.exit_code == 1
     assert "failing failed: " in result.stderr
     assert "a fault" in result.stderr
-    assert "pushed beside dry" in result.stdout, "the first that is complete is the reference"
+    assert "pushed compared with dry" in result.stdout, "the first that is complete is the reference"
     found = json.loads((tmp_path / "comparison.json").read_text())
     assert "a fault" in found["runs"][0]["error"]
     assert [(one["reference"], one["backend"]) for one in found["pairs"]] == [("dry", "pushed")]
@@ -486,7 +486,7 @@ def test_time_that_a_run_has_reached(text: str | None, time: float, tmp_path: Pa
 
 
 def test_processes_of_their_own(tmp_path: Path) -> None:
-    """A failure, an error that nobody expected and a death, beside a run that succeeds."""
+    """A failure, an error that nobody expected and a death, with a run that succeeds."""
     backends = ["dry", "failing", "faulty", "dying"]
     comparison, _ = compare(BOUNCE, backends, SHORT, tmp_path)
     assert [run.backend for run in comparison.complete] == ["dry"]
