@@ -160,7 +160,8 @@ class Registry:
         unusable = [entry for entry in self.entries if entry.kind is kind and not entry.available]
         hints = "".join(f" {entry.name!r} is not usable here: {entry.hint}" for entry in unusable)
         failures = "".join(f" Plug-in {one.name} of {one.origin} did not load: {one.reason}." for one in self.unloaded)
-        guess = suggestion(name, self.names(kind))
+        other = [entry.name for entry in self.entries if entry.kind is kind and name in entry.part.also_called]
+        guess = f"Did you mean {other[0]!r}?" if other else suggestion(name, self.names(kind))
         return (guess or "`rigidfluid plugins` lists what is installed.") + hints + failures
 
 

@@ -18,7 +18,7 @@ from rigidfluid.registry import (
     Registry,
 )
 
-_TABLES = {
+TABLES = {
     FLUID_BACKEND: ("FluidTable",),
     BODY: ("BodyTable",),
     MECHANISM: ("MechanismTable",),
@@ -28,6 +28,7 @@ _TABLES = {
     JOINT: ("JointTable",),
     SIZE_FIELD: ("SizeFieldTable",),
 }
+"""Models of the tables that name a part, by its kind."""
 # The parts that a table means where it names none.
 _UNNAMED = {
     FLUID_BACKEND: ("scikit-fem",),
@@ -55,7 +56,7 @@ def _add_part(definitions: dict[str, Any], entry: Entry) -> None:
     condition: dict[str, Any] = {"properties": {key: {"const": entry.name}}}
     if entry.name not in _UNNAMED[entry.kind]:
         condition["required"] = [key]
-    for name in _TABLES[entry.kind]:
+    for name in TABLES[entry.kind]:
         table = definitions[name]
         table.pop("additionalProperties", None)
         table["unevaluatedProperties"] = False

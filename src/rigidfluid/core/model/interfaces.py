@@ -50,9 +50,10 @@ class PartOptions(BaseModel, metaclass=TableType):
 
 
 class Part(ABC):
-    """Replaceable part: its name, the packages it requires and its options."""
+    """Replaceable part: its name, other words for it, the packages it requires and its options."""
 
     name: ClassVar[str]
+    also_called: ClassVar[tuple[str, ...]] = ()
     requires: ClassVar[Mapping[str, str]] = {}
     Options: ClassVar[type[PartOptions]] = PartOptions
 
