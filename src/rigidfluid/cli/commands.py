@@ -40,7 +40,7 @@ from rigidfluid.cli.options import (
 )
 from rigidfluid.cli.plug_ins import Commands
 from rigidfluid.cli.progress import compilation_told, movie_bar, progress_bar, runs_bar
-from rigidfluid.cli.start import examples
+from rigidfluid.cli.start import examples, new
 from rigidfluid.cli.tables import (
     print_backends,
     print_bodies,
@@ -58,8 +58,9 @@ from rigidfluid.plugin_commands import plugin_commands
 if TYPE_CHECKING:
     from rigidfluid.core.output.history import History
 
-app = typer.Typer(cls=Commands, add_completion=False, pretty_exceptions_enable=False)
+app = typer.Typer(cls=Commands, pretty_exceptions_enable=False)
 
+app.command()(new)
 app.command()(examples)
 
 

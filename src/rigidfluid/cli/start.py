@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
+import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any, Literal
 
 import typer
 from rich.box import SIMPLE_HEAD
@@ -20,8 +22,28 @@ def _names() -> list[str]:
     return example_names()
 
 
+NewFile = Annotated[Path, typer.Argument(metavar="FILE", help="Scene file to write.")]
+Dimension = Annotated[int | None, typer.Option(min=2, max=3, help="Number of space dimensions; 2 if not given.")]
+Bodies = Annotated[int | None, typer.Option(min=1, max=200, help="Number of bodies; 1 if not given.")]
+ShapeName = Annotated[
+    Literal["sphere", "ellipsoid", "polygon"] | None,
+    typer.Option(help="Of the bodies; sphere if not given: in 2D a disk."),
+]
+Size = Annotated[float | None, typer.Option(help="Width of the box in the units; 2 cm if not given.")]
+FluidName = Annotated[
+    Literal["water", "oil", "glycerine", "none"] | None, typer.Option(help="In the box; oil if not given.")
+]
+Gravity = Annotated[float | None, typer.Option(min=0.0, help="Downwards, in the units; the Earth's if not given.")]
+UnitsName = Annotated[Literal["cm", "m", "mm"] | None, typer.Option(help="Of lengths, with s and g, kg or mg.")]
+_CHOICES = {
+    "units": ["cm", "m", "mm"],
+    "dimension": ["2", "3"],
+    "shape": ["sphere", "ellipsoid", "polygon"],
+    "fluid": ["water", "oil", "glycerine", "none"],
+}
 ExampleName = Annotated[
-    str | None, typer.Argument(metavar="NAME", help="Scene to copy here; all are listed without.", autocompletion=_names)
+    str | None,
+    typer.Argument(metavar="NAME", help="Scene to copy here; all are listed without.", autocompletion=_names),
 ]
 
 
@@ -36,6 +58,53 @@ def examples(name: ExampleName = None) -> None:
         scene, *others = copy_example(name, Path())
         tell(f"wrote {', '.join(map(str, (scene, *others)))}")
         tell(f"next: rigidfluid {command_for(name)} {scene}")
+
+
+def new(
+    file: NewFile = Path("scene.toml"),
+    dimension: Dimension = None,
+    bodies: Bodies = None,
+    shape: ShapeName = None,
+    size: Size = None,
+    fluid: FluidName = None,
+    gravity: Gravity = None,
+    units: UnitsName = None,
+) -> None:
+    """Write a scene of one's own, of bodies in a box, that passes `check`; on a terminal asks for what is not given."""
+    with reported():
+        from rigidfluid.checks.run_time import time_in_words
+        from rigidfluid.start.new_file import require_new, write_new
+        from rigidfluid.start.new_scene import Wishes, new_scene
+
+        require_new(file)
+        given = {"units": units, "dimension": dimension, "bodies": bodies, "shape": shape, "fluid": fluid, "size": size}
+        wishes = Wishes(**_asked(given), gravity=gravity)
+        text, report = new_scene(wishes, re.sub(r"[^\w.-]", "_", file.stem))
+        write_new({file: text.encode()})
+        tell(f"wrote {file}")
+        for time in (one.found for one in report.findings if one.question == "time"):
+            tell(f"a run takes {time_in_words(time['least'], time['most'])} of one core")
+        tell(f"next: rigidfluid run {file}")
+
+
+def _asked(given: dict[str, Any]) -> dict[str, Any]:
+    """What is given, and where somebody is there to be asked the answers to what is not."""
+    if not (sys.stdin.isatty() and sys.stderr.isatty()):
+        return {key: value for key, value in given.items() if value is not None}
+    from rich.prompt import FloatPrompt, IntPrompt, Prompt
+
+    from rigidfluid.start.new_scene import Wishes
+
+    prompts = {str: Prompt, int: IntPrompt, float: FloatPrompt}
+    answers: dict[str, Any] = {}
+    for key, value in given.items():
+        default = Wishes(**answers).width if key == "size" else getattr(Wishes, key)
+        ask = prompts[type(default)].ask
+        found = (
+            ask(key, choices=_CHOICES.get(key), default=default, console=make_console(True)) if value is None else value
+        )
+        answers[key] = found
+    return answers
 
 
 def _print_examples() -> None:

@@ -7,11 +7,16 @@ from pathlib import Path
 from rigidfluid.errors import OutputError
 
 
+def require_new(path: Path) -> None:
+    """Raise OutputError where there is a file already."""
+    if path.exists():
+        raise OutputError(str(path), "a file that is there", "a new one", "Move it away, or choose another place.")
+
+
 def write_new(files: dict[Path, bytes]) -> None:
     """Write files, all or none; raises OutputError where one is there already, or cannot be written."""
     for path in files:
-        if path.exists():
-            raise OutputError(str(path), "a file that is there", "a new one", "Move it away, or choose another place.")
+        require_new(path)
     for path, content in files.items():
         try:
             path.parent.mkdir(parents=True, exist_ok=True)

@@ -5,13 +5,13 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import ceil, sqrt
+from math import ceil
 from typing import Literal
 
 from rigidfluid.checks import Finding, Report, check
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.errors import SceneError
-from rigidfluid.start.scene_text import Numbers, scene_text
+from rigidfluid.start.scene_text import UNITS, Numbers, scene_text
 
 Shape = Literal["sphere", "ellipsoid", "polygon"]
 Fluid = Literal["water", "oil", "glycerine", "none"]
@@ -22,18 +22,23 @@ _MARGIN = 0.9
 """Share that is taken of what a check says would be enough at most."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Wishes:
-    """What a user asks for: bodies of a ``shape`` in a box that is ``size`` wide [length], in a ``fluid``, ``gravity``
-    downwards [length/time²]; None: that of the Earth."""
+    """Wishes of a user: bodies of a ``shape`` in a box of a ``size`` [length], None: 2 cm wide; in a ``fluid``, with
+    ``gravity`` downwards [length/time²], None: that of the Earth."""
 
     dimension: Literal[2, 3] = 2
     bodies: int = 1
     shape: Shape = "sphere"
-    size: float = 2.0
+    size: float | None = None
     fluid: Fluid = "oil"
     gravity: float | None = None
     units: Units = "cm"
+
+    @property
+    def width(self) -> float:
+        """Width of the box [length]."""
+        return 0.02 / UNITS[self.units][2] if self.size is None else self.size
 
 
 def new_scene(wishes: Wishes, name: str) -> tuple[str, Report]:
@@ -56,7 +61,7 @@ def new_scene(wishes: Wishes, name: str) -> tuple[str, Report]:
 
 def _paced(wishes: Wishes, name: str) -> Numbers:
     """Numbers with an end and a step that suit the speeds that a check expects."""
-    first = Numbers.of_size(wishes.size, wishes.bodies, wishes.dimension)
+    first = Numbers.of_size(wishes.width, wishes.bodies, wishes.dimension)
     _, report = _checked(wishes, name, first)
     speed = max(row.impact_speed for row in report.bodies)
     return replace(first, end=1.5 * first.height / speed, step=0.1 * first.radius / speed)
@@ -65,3 +70,21 @@ def _paced(wishes: Wishes, name: str) -> Numbers:
 def _checked(wishes: Wishes, name: str, numbers: Numbers) -> tuple[str, Report]:
     text = scene_text(wishes, name, numbers)
     return text, check(scene_from_dict(tomllib.loads(text)))
+
+
+def _adopted(numbers: Numbers, doubts: Sequence[Finding]) -> Numbers:
+    """Numbers that are enough for what a check doubts, where it says so."""
+    for doubt in doubts:
+        enough = {key: float(value) for key, value in doubt.enough.items() if isinstance(value, int | float)}
+        if "time_step" in enough:
+            numbers = replace(numbers, step=min(numbers.step, _MARGIN * enough["time_step"]))
+        elif "refinements" in enough:
+            numbers = replace(numbers, refinements=ceil(enough["refinements"]))
+        elif "size_body" in enough:
+            size = min(numbers.size_body or enough["size_body"], enough["size_body"])
+            numbers = replace(numbers, size_body=_MARGIN * size)
+        elif "restitution_stokes" in enough:
+            numbers = replace(numbers, restitution_stokes=enough["restitution_stokes"])
+        elif "range" in enough:
+            numbers = replace(numbers, range=min(numbers.range, _MARGIN * enough["range"]))
+    return numbers

@@ -41,8 +41,8 @@ _NAMED = (
     ("interaction", "law", FORCE_LAW, InteractionTable),
     ("mesh.field", "type", SIZE_FIELD, SizeFieldTable),
 )
-"""Places of tables that name a part, the key that does it, the part's kind, and the table's own keys; none where several
-parts have keys in one table."""
+"""Places of tables that name a part, the key that does it, the part's kind, and the table's own keys; none where
+several parts have keys in one table."""
 
 
 def check_part_tables(data: Mapping[str, Any], registry: Registry) -> None:

@@ -54,8 +54,7 @@ def read_options(
     meant = {nearest(key, fields_by_key(part.Options)): value for key, value in options.items()}
     with all_told() as ask:
         ask(refuse_unread, options, [part], common, at)
-        read = ask(own_options, part, {**meant, **options}, at)
-    return read
+        return ask(own_options, part, {**meant, **options}, at)
 
 
 def build_part(kind: Kind[S], table: NamesPart, at: str, registry: Registry, dimension: int) -> S:
