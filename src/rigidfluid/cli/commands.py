@@ -47,9 +47,10 @@ from rigidfluid.cli.tables import (
     print_domain,
     print_end,
     print_features,
-    print_findings,
     print_insertion,
+    print_notes,
     print_study,
+    print_verdict,
 )
 from rigidfluid.commands import Assignments, JsonFile, SceneFile, write_json
 from rigidfluid.core.run.process import no_collection
@@ -114,10 +115,11 @@ def check(scene: SceneFile, assignments: Assignments = None, json_file: JsonFile
             report = ask(load_scene(scene, assignments or ()))
         if json_file is not None:
             write_json(report.to_dict(), json_file)
+        print_verdict(report)
         print_domain(report)
         print_features(report)
         print_bodies(report)
-        print_findings(report)
+        print_notes(report)
     if report.count("error"):
         raise typer.Exit(FOUND_ERRORS)
 

@@ -95,13 +95,11 @@ def test_questions_are_asked_on_a_terminal_alone(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "rigidfluid", "new", "mine.toml", "--shape", "ellipsoid", "--size", "3"]
     ours, theirs = pty.openpty()
     environment = os.environ | {"TERM": "dumb"}
-    asked = subprocess.Popen(
-        command, cwd=tmp_path, stdin=theirs, stderr=theirs, stdout=subprocess.PIPE, env=environment
-    )
-    os.write(ours, b"mm\n\n2\nnone\n")  # units, dimension, bodies, fluid
-    assert asked.stdout is not None
-    assert b"wrote mine.toml" in asked.stdout.read()
-    assert asked.wait() == 0
+    pipes = {"stdin": theirs, "stderr": theirs, "stdout": subprocess.PIPE}
+    with subprocess.Popen(command, cwd=tmp_path, env=environment, **pipes) as asked:  # type: ignore[call-overload]
+        os.write(ours, b"mm\n\n2\nnone\n")  # units, dimension, bodies, fluid
+        assert b"wrote mine.toml" in asked.communicate()[0]
+    assert asked.returncode == 0
     scene = load_scene(tmp_path / "mine.toml")
     assert [body.type for body in scene.body] == ["ellipsoid"] * 2
     assert (scene.domain.options["upper"][0], scene.fluid.gravity) == (3.0, (0.0, -9810.0))
