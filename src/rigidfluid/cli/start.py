@@ -88,7 +88,7 @@ def new(
 
 
 def _asked(given: dict[str, Any]) -> dict[str, Any]:
-    """What is given, and where somebody is there to be asked the answers to what is not."""
+    """The values given and, on a terminal, the answers of who sits there in place of the others."""
     if not (sys.stdin.isatty() and sys.stderr.isatty()):
         return {key: value for key, value in given.items() if value is not None}
     from rich.prompt import FloatPrompt, IntPrompt, Prompt

@@ -1,1 +1,1 @@
-"""What a user starts from: scenes that come with the package, and one of the user's own."""
+"""Scenes to start from: those that come with the package, and a new one of the user's own."""

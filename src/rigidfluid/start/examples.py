@@ -16,7 +16,7 @@ from rigidfluid.start.new_file import write_new
 _PACKAGE = Path(__file__).parents[1]
 _IN_WHEEL, _IN_CLONE = _PACKAGE / "scenes", _PACKAGE.parents[1] / "scenes"
 FOLDER = _IN_WHEEL if _IN_WHEEL.is_dir() else _IN_CLONE
-"""Where the scenes are."""
+"""Folder of the scenes."""
 
 
 @dataclass(frozen=True, slots=True)

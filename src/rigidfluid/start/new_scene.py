@@ -61,7 +61,7 @@ def new_scene(wishes: Wishes, name: str) -> tuple[str, Report]:
 
 def _paced(wishes: Wishes, name: str) -> Numbers:
     """Numbers with an end and a step that suit the speeds that a check expects."""
-    first = Numbers.of_size(wishes.width, wishes.bodies, wishes.dimension)
+    first = Numbers.in_box(wishes.width, wishes.bodies, wishes.dimension)
     _, report = _checked(wishes, name, first)
     speed = max(row.impact_speed for row in report.bodies)
     return replace(first, end=1.5 * first.height / speed, step=0.1 * first.radius / speed)

@@ -39,7 +39,7 @@ class Numbers:
     restitution_stokes: float | None = None
 
     @classmethod
-    def of_size(cls, size: float, bodies: int, dimension: int) -> Self:
+    def in_box(cls, size: float, bodies: int, dimension: int) -> Self:
         """Lengths of so many bodies in a box that is ``size`` wide; they start in rows of ``columns``."""
         columns = ceil(bodies ** (1.0 / dimension) - 1e-9)
         rows = ceil(bodies / columns ** (dimension - 1))

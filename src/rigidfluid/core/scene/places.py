@@ -12,7 +12,7 @@ from typing import Any
 from rigidfluid.errors import PluginError, RigidfluidError, SceneError, SceneErrors
 
 _CLOSINGS = ("", "]", "]]", "]]]")
-"""What closes the lists that are open after a line."""
+"""Ends of lists that are open after a line."""
 
 
 @contextmanager
