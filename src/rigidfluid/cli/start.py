@@ -72,7 +72,6 @@ def new(
 ) -> None:
     """Write a scene of one's own, of bodies in a box, that passes `check`; on a terminal asks for what is not given."""
     with reported():
-        from rigidfluid.checks.run_time import time_in_words
         from rigidfluid.start.new_file import require_new, write_new
         from rigidfluid.start.new_scene import Wishes, new_scene
 
@@ -82,8 +81,9 @@ def new(
         text, report = new_scene(wishes, re.sub(r"[^\w.-]", "_", file.stem))
         write_new({file: text.encode()})
         tell(f"wrote {file}")
-        for time in (one.found for one in report.findings if one.question == "time"):
-            tell(f"a run takes {time_in_words(time['least'], time['most'])} of one core")
+        for finding in report.findings:
+            if finding.question == "time":
+                tell(finding.text)
         tell(f"next: rigidfluid run {file}")
 
 
@@ -95,7 +95,7 @@ def _asked(given: dict[str, Any]) -> dict[str, Any]:
 
     from rigidfluid.start.new_scene import Wishes
 
-    prompts = {str: Prompt, int: IntPrompt, float: FloatPrompt}
+    prompts: dict[type, Any] = {str: Prompt, int: IntPrompt, float: FloatPrompt}
     answers: dict[str, Any] = {}
     for key, value in given.items():
         default = Wishes(**answers).width if key == "size" else getattr(Wishes, key)

@@ -15,10 +15,11 @@ from rigidfluid.registry import (
     MECHANISM,
     SIZE_FIELD,
     Entry,
+    Kind,
     Registry,
 )
 
-TABLES = {
+_TABLES: dict[Kind[Any], tuple[str, ...]] = {
     FLUID_BACKEND: ("FluidTable",),
     BODY: ("BodyTable",),
     MECHANISM: ("MechanismTable",),
@@ -28,7 +29,6 @@ TABLES = {
     JOINT: ("JointTable",),
     SIZE_FIELD: ("SizeFieldTable",),
 }
-"""Models of the tables that name a part, by its kind."""
 # The parts that a table means where it names none.
 _UNNAMED = {
     FLUID_BACKEND: ("scikit-fem",),
@@ -47,7 +47,7 @@ def json_schema() -> dict[str, Any]:
     others. Raises PluginError if a plug-in is not usable."""
     schema = Scene.model_json_schema()
     registry = Registry.load()
-    for kind, tables in TABLES.items():
+    for kind, tables in _TABLES.items():
         for name in tables:
             key = kind.field.rpartition(".")[2]
             schema["$defs"][name]["properties"][key]["enum"] = ["auto"] * (kind is DETECTOR) + registry.names(kind)
@@ -61,7 +61,7 @@ def _add_part(definitions: dict[str, Any], entry: Entry) -> None:
     condition: dict[str, Any] = {"properties": {key: {"const": entry.name}}}
     if entry.name not in _UNNAMED[entry.kind]:
         condition["required"] = [key]
-    for name in TABLES[entry.kind]:
+    for name in _TABLES[entry.kind]:
         table = definitions[name]
         table.pop("additionalProperties", None)
         table["unevaluatedProperties"] = False
