@@ -19,6 +19,9 @@ Made from the models by `python docs/make_scene_reference.py`; a test fails wher
 Units are free but must be consistent: all in cm, g and s, or all in m, kg and s. `d` is the dimension; in 2D all is per
 unit depth, so that a density is in mass/length². Keys that nothing reads are refused. On the command line,
 `--set table.key=value` overrides a key; entries of lists are counted from 0, as in `body.0.density`.
+
+Editors with taplo, as VS Code with Even Better TOML, complete and check keys and names of parts after
+`rigidfluid schema > scene.schema.json`, and with `#:schema scene.schema.json` in the first line of a scene.
 """
 Schema = dict[str, Any]
 

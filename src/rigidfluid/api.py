@@ -128,6 +128,7 @@ from rigidfluid.errors import (
     RigidfluidError,
     RunWarning,
     SceneError,
+    SceneErrors,
     StepError,
     StepRejected,
 )
@@ -306,6 +307,7 @@ __all__ = [
     "SamePoint",
     "Scene",
     "SceneError",
+    "SceneErrors",
     "ScikitFem",
     "Selected",
     "Simulation",

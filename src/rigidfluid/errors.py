@@ -2,6 +2,7 @@
 
 RigidfluidError
 ├── SceneError          the scene or study file, or a value in it, cannot be used
+│   ├── SceneErrors     several such errors, told at once
 │   └── ArgumentError   a value that was given in Python, not in a file
 ├── PluginError         a plug-in is missing, misspelt, doubled or incomplete, or a part gives what none may
 ├── MeshError           no valid mesh can be made for this geometry
@@ -13,6 +14,9 @@ RunWarning tells of what throws doubt on the results of a run that came to its e
 """
 
 from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any, Self
 
 
 class RigidfluidError(Exception):
@@ -28,7 +32,14 @@ class RigidfluidError(Exception):
         What would have been accepted; None where that is no value.
     remedy : str
         What the user can do about it.
+
+    Attributes
+    ----------
+    place : str
+        Where it stands in a file, as ``scene.toml:12``, or on the command line; empty where that is not known.
     """
+
+    place = ""
 
     def __init__(self, subject: str, found: object, allowed: str | None, remedy: str) -> None:
         self.subject = subject
@@ -38,13 +49,44 @@ class RigidfluidError(Exception):
         statement = found if allowed is None else f"found {found}; allowed is {allowed}"
         super().__init__(f"{subject}: {statement}. {remedy}")
 
-    def __reduce__(self) -> tuple[type[RigidfluidError], tuple[str, str, str | None, str]]:
-        """Pickle the error by its four parts, so that it can pass between processes."""
-        return type(self), (self.subject, str(self.found), self.allowed, self.remedy)
+    def __str__(self) -> str:
+        return f"{self.place}: {super().__str__()}" if self.place else super().__str__()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle the error by its four parts and its place, so that it can pass between processes."""
+        return type(self), (self.subject, str(self.found), self.allowed, self.remedy), {"place": self.place}
+
+    def renamed(self, name: Callable[[str], str]) -> Self:
+        """The same error about the subject that ``name`` makes of this one."""
+        return type(self)(name(self.subject), self.found, self.allowed, self.remedy)
 
 
 class SceneError(RigidfluidError):
     """The scene or study file, or a value in it, cannot be used."""
+
+
+class SceneErrors(SceneError):
+    """Several errors of a scene, told at once; its subject is that of the first.
+
+    Parameters
+    ----------
+    errors : iterable of RigidfluidError
+        SceneErrors and PluginErrors, two or more.
+    """
+
+    def __init__(self, errors: Iterable[RigidfluidError]) -> None:
+        self.errors = tuple(errors)
+        first = self.errors[0]
+        super().__init__(first.subject, first.found, first.allowed, first.remedy)
+
+    def __str__(self) -> str:
+        return "\n".join([f"{len(self.errors)} errors in the scene", *map(str, self.errors)])
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.errors,)
+
+    def renamed(self, name: Callable[[str], str]) -> Self:
+        return type(self)(error.renamed(name) for error in self.errors)
 
 
 class ArgumentError(SceneError, ValueError):

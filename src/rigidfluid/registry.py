@@ -166,7 +166,8 @@ class Registry:
             f" Plug-in {one.name} of {one.origin} did not load: {one.reason.removesuffix('.')}."
             for one in self.unloaded
         )
-        guess = suggestion(name, self.names(kind))
+        other = [entry.name for entry in self.entries if entry.kind is kind and name in entry.part.also_called]
+        guess = f"Did you mean {other[0]!r}?" if other else suggestion(name, self.names(kind))
         return (guess or "`rigidfluid plugins` lists what is installed.") + hints + failures
 
 

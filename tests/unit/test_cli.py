@@ -312,3 +312,34 @@ def test_names_are_no_formulas(name: str, tmp_path: Path) -> None:
     changes = ("--set", f'body.0.name="{name}"', "--set", "time.end=0.03")
     assert rigidfluid_command("run", SCENE, *changes, "--out", tmp_path).exit_code == 0
     assert rigidfluid_command("report", tmp_path).exit_code == 0
+
+
+def test_a_check_tells_its_verdict_first_and_groups_notes() -> None:
+    lines = rigidfluid_command("check", SCENES / "many_bodies_3d.toml").stdout.splitlines()
+    assert lines[0].startswith("many_bodies_3d: 0 errors, ")
+    assert lines[1].startswith("warning: ")
+    notes = [line for line in lines if line.startswith("rest: ")]
+    assert len(notes) == 4
+    assert notes[-1].endswith(" more, which --json writes.")
+
+
+def test_the_shell_completes_commands_examples_and_backends() -> None:
+    def completed(words: str) -> set[str]:
+        place = {"COMP_WORDS": words, "COMP_CWORD": str(words.count(" "))}
+        environment = {"_RIGIDFLUID_COMPLETE": "complete_bash", **place}
+        told = CliRunner().invoke(app, [], env=environment, prog_name="rigidfluid")
+        return set(told.stdout.split())
+
+    assert {"new", "examples", "check"} <= completed("rigidfluid ")
+    assert completed("rigidfluid examples falling_d") == {"falling_disk", "falling_disk_window"}
+    assert completed("rigidfluid compare scene.toml --backend sci") == {"scikit-fem"}
+
+
+def test_the_schema_lists_what_is_installed() -> None:
+    schema = json.loads(rigidfluid_command("schema").stdout)
+    tables = tomllib.loads(SCENE.read_text())
+    tables["body"][0]["type"] = "disk"
+    told = [error.message for error in jsonschema.Draft202012Validator(schema).iter_errors(tables)]
+    assert any(message.startswith("'disk' is not one of ['sphere'") for message in told)
+    assert schema["$defs"]["ContactTable"]["properties"]["detector"]["enum"][0] == "auto"
+    assert "centre" in schema["$defs"]["InteractionTable"]["properties"]["law"]["enum"]

@@ -43,6 +43,7 @@ class Ellipsoid(Body):
     """
 
     name: ClassVar[str] = "ellipsoid"
+    also_called: ClassVar[tuple[str, ...]] = ("ellipse", "oval", "spheroid")
     Options: ClassVar[type[PartOptions]] = EllipsoidOptions
     options: EllipsoidOptions
 

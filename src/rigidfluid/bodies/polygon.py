@@ -49,6 +49,7 @@ class Polygon(FacetBody):
     """
 
     name: ClassVar[str] = "polygon"
+    also_called: ClassVar[tuple[str, ...]] = ("rectangle", "square", "triangle")
     Options: ClassVar[type[PartOptions]] = PolygonOptions
     options: PolygonOptions
 

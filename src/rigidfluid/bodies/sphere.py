@@ -32,6 +32,7 @@ class Sphere(Body):
     """
 
     name: ClassVar[str] = "sphere"
+    also_called: ClassVar[tuple[str, ...]] = ("ball", "circle", "cylinder", "disc", "disk")
     Options: ClassVar[type[PartOptions]] = SphereOptions
     options: SphereOptions
 

@@ -29,6 +29,7 @@ from rigidfluid.checks.shapes import facet_findings
 from rigidfluid.checks.static_load import rest_findings, stack_findings
 from rigidfluid.checks.stepping import step_findings
 from rigidfluid.checks.tolerance import tolerance_findings
+from rigidfluid.checks.units import unit_findings
 from rigidfluid.core.case.scene_model import Case, model_of
 from rigidfluid.core.contact.spot_check import spot_check
 from rigidfluid.core.geometry.arrays import FloatArray
@@ -101,7 +102,7 @@ def findings(model: Model, system: System, start: Contacts) -> Iterator[Finding]
     """The answers to all questions, in the order in which they are asked."""
     mesh, time = model.fluid.mesh, model.time
     yield from chain(law_findings(system), open_face_findings(system), strength_findings(system))
-    yield from chain(tolerance_findings(time), facet_findings(system))
+    yield from chain(unit_findings(model, system), tolerance_findings(time), facet_findings(system))
     yield from chain(joint_findings(model, system), mechanism_findings(model, system))
     if mesh is not None:
         size = run_size(model, system, mesh)

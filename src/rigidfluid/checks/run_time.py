@@ -40,10 +40,11 @@ def run_time_findings(size: RunSize, system: System, time: TimeTable) -> Iterato
     )
     most += steps * contact / speed
     found: Figures = {"steps": steps, "meshes": size.meshes, "least": least, "most": most, "speed": speed}
-    text = f"{steps} steps and some {size.meshes} meshes take {_time_in_words(least, most)} of one core, as fast as now"
+    text = f"{steps} steps and some {size.meshes} meshes take {time_in_words(least, most)} of one core, as fast as now"
     yield Finding("note", QUESTION, (), text, found=found)
 
 
-def _time_in_words(least: float, most: float) -> str:
+def time_in_words(least: float, most: float) -> str:
+    """A time between two [s], in the unit that suits it."""
     _, unit, name = next(row for row in _UNITS if most >= row[0])
     return f"{least / unit:.2g} to {most / unit:.2g} {name}"

@@ -40,15 +40,17 @@ from rigidfluid.cli.options import (
 )
 from rigidfluid.cli.plug_ins import Commands
 from rigidfluid.cli.progress import compilation_told, movie_bar, progress_bar, runs_bar
+from rigidfluid.cli.start import examples, new
 from rigidfluid.cli.tables import (
     print_backends,
     print_bodies,
     print_domain,
     print_end,
     print_features,
-    print_findings,
     print_insertion,
+    print_notes,
     print_study,
+    print_verdict,
 )
 from rigidfluid.commands import Assignments, JsonFile, SceneFile, write_json
 from rigidfluid.core.run.process import no_collection
@@ -57,7 +59,10 @@ from rigidfluid.plugin_commands import plugin_commands
 if TYPE_CHECKING:
     from rigidfluid.core.output.history import History
 
-app = typer.Typer(cls=Commands, add_completion=False, pretty_exceptions_enable=False)
+app = typer.Typer(cls=Commands, pretty_exceptions_enable=False)
+
+app.command()(new)
+app.command()(examples)
 
 
 @app.callback(invoke_without_command=True)
@@ -82,12 +87,14 @@ def run(scene: SceneFile, out: OutFolder = None, assignments: Assignments = None
         with no_collection():
             from rigidfluid.core.case.load import load_scene
             from rigidfluid.core.run.run import simulate
+            from rigidfluid.core.scene.places import told_in_file
 
             loaded = load_scene(scene, assignments or ())
         folder = out or Path("out") / loaded.name
         ends: list[History] = []
         try:
-            with compilation_told(), progress_bar(loaded.name, loaded.time) as show:
+            compiling, told = compilation_told(), told_in_file(scene, assignments or ())
+            with compiling, told, progress_bar(loaded.name, loaded.time) as show:
                 simulate(
                     loaded, folder, resume=resume, progress=show, processes=console.LAUNCH.size, finished=ends.append
                 )
@@ -102,14 +109,17 @@ def check(scene: SceneFile, assignments: Assignments = None, json_file: JsonFile
     with reported():
         from rigidfluid.checks import check as ask
         from rigidfluid.core.case.load import load_scene
+        from rigidfluid.core.scene.places import told_in_file
 
-        report = ask(load_scene(scene, assignments or ()))
+        with told_in_file(scene, assignments or ()):
+            report = ask(load_scene(scene, assignments or ()))
         if json_file is not None:
             write_json(report.to_dict(), json_file)
+        print_verdict(report)
         print_domain(report)
         print_features(report)
         print_bodies(report)
-        print_findings(report)
+        print_notes(report)
     if report.count("error"):
         raise typer.Exit(FOUND_ERRORS)
 
@@ -119,10 +129,12 @@ def insert(scene: SceneFile, assignments: Assignments = None, out: MeshFolder = 
     """Make a scene's first mesh, write it for other programs, and say how well the bodies came into it."""
     with reported():
         from rigidfluid.core.case.load import load_scene
+        from rigidfluid.core.scene.places import told_in_file
         from rigidfluid.post.insertion import insert as make_mesh
 
         loaded = load_scene(scene, assignments or ())
-        figures, written = make_mesh(loaded, out, lambda phase: tell_aside(f"{loaded.name}: {phase}"))
+        with told_in_file(scene, assignments or ()):
+            figures, written = make_mesh(loaded, out, lambda phase: tell_aside(f"{loaded.name}: {phase}"))
         print_insertion(figures)
         tell(f"wrote to {written[0].parent}: {', '.join(path.name for path in written)}")
 

@@ -15,6 +15,13 @@ def named_path(text: str) -> Path:
     return Path(text)
 
 
+def _backend_names() -> list[str]:
+    """Names of all fluid backends, for the shell's completion."""
+    from rigidfluid.registry import FLUID_BACKEND, Registry
+
+    return Registry.load().names(FLUID_BACKEND)
+
+
 Folder = Annotated[Path, typer.Argument(metavar="DIR", help="Folder that a run has written.")]
 OutFolder = Annotated[
     Path | None, typer.Option("--out", parser=named_path, metavar="DIR", help="Where to write; default out/<name>.")
@@ -33,7 +40,8 @@ Continue = Annotated[
     bool, typer.Option("--resume/--fresh", help="Keep the runs that DIR holds already, or run everything again.")
 ]
 Backends = Annotated[
-    list[str] | None, typer.Option("--backend", metavar="NAME", help="A fluid backend; name two or more.")
+    list[str] | None,
+    typer.Option("--backend", metavar="NAME", help="A fluid backend; name two or more.", autocompletion=_backend_names),
 ]
 Version = Annotated[bool, typer.Option("--version", help="Print the version and exit.")]
 MovieFile = Annotated[

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from datetime import timedelta
 from typing import TYPE_CHECKING
 
 from rigidfluid.cli import console
@@ -13,6 +14,9 @@ if TYPE_CHECKING:
     from rigidfluid.core.run.run import Progress
     from rigidfluid.core.scene.scene import TimeTable
     from rigidfluid.post.progress import RunsProgress
+
+SECONDS_OF_A_LINE = 10.0
+"""Seconds from one line of progress to the next."""
 
 
 @contextmanager
@@ -37,10 +41,14 @@ def compilation_told() -> Iterator[None]:
 
 @contextmanager
 def progress_bar(name: str, time: TimeTable) -> Iterator[Callable[[Progress], None]]:
-    """Yield a function that shows in a bar how far a run is in its time, on the first process's terminal alone."""
+    """Yield a function that shows in a bar how far a run is in its time, on the first process's terminal alone; in
+    lines where that is none."""
     terminal = make_console(stderr=True)
-    if console.LAUNCH.rank > 0 or not terminal.is_terminal:
+    if console.LAUNCH.rank > 0:
         yield lambda _: None
+        return
+    if not terminal.is_terminal:
+        yield progress_lines(name)
         return
     from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar
@@ -60,6 +68,29 @@ def progress_bar(name: str, time: TimeTable) -> Iterator[Callable[[Progress], No
         yield lambda now: bar.update(
             task, completed=now.time, step=now.step, gap=now.gap, warning=_mesh_failures(now.failed_remeshes)
         )
+
+
+def progress_lines(name: str) -> Callable[[Progress], None]:
+    """A function that tells every ten seconds how far a run is in its time, and how long the rest will take at the
+    speed so far."""
+    first: Progress | None = None
+    told = 0.0
+
+    def show(now: Progress) -> None:
+        nonlocal first, told
+        if first is None:
+            first, told = now, now.elapsed
+            return
+        if now.elapsed - told < SECONDS_OF_A_LINE:
+            return
+        told = now.elapsed
+        seconds = (now.elapsed - first.elapsed) * (now.end - now.time) / (now.time - first.time)
+        tell_aside(
+            f"{name}: time {now.time:.4g} of {now.end:.4g}, {now.time / now.end:.0%}, step {now.step:.3g}"
+            f"{_mesh_failures(now.failed_remeshes)}, some {timedelta(seconds=round(seconds))} to go"
+        )
+
+    return show
 
 
 def _mesh_failures(failed: int) -> str:

@@ -23,6 +23,10 @@ if TYPE_CHECKING:
 MOST_BODIES = 20
 """Largest number of bodies or surfaces that a table shows."""
 
+MOST_NOTES = 3
+"""Largest number of notes on one question that a check prints."""
+
+_CHECK_STYLES = {"error": "red", "warning": "yellow"}
 _STYLES = {"serious warning": "red", "warning": "yellow"}
 """Colours of what a run is told at its end, by its grade."""
 
@@ -149,13 +153,25 @@ def print_bodies(report: Report) -> None:
         tell(f"and {len(report.bodies) - len(shown)} bodies that are further from anything")
 
 
-def print_findings(report: Report) -> None:
-    """Print what a check has found, and how many errors and warnings."""
+def print_verdict(report: Report) -> None:
+    """Print how many errors and warnings a check has found, and which."""
+    tell(f"{report.scene}: {report.count('error')} errors, {report.count('warning')} warnings")
     for finding in report.findings:
-        style = {"error": "red", "warning": "yellow"}.get(finding.grade, "")
-        text = f"{finding.grade}: {finding.text}." + (f" {finding.remedy}" if finding.remedy else "")
-        make_console().print(Text(text, style=style), soft_wrap=True)
-    tell(f"{report.count('error')} errors, {report.count('warning')} warnings")
+        if finding.grade != "note":
+            tell(f"{finding.grade}: {finding.text}. {finding.remedy}", _CHECK_STYLES[finding.grade])
+
+
+def print_notes(report: Report) -> None:
+    """Print notes of a check, by question; of many that answer the same one, the first."""
+    notes: dict[str, list[str]] = {}
+    for finding in report.findings:
+        if finding.grade == "note":
+            notes.setdefault(finding.question, []).append(finding.text)
+    for question, texts in notes.items():
+        for text in texts[:MOST_NOTES]:
+            tell(f"{question}: {text}.")
+        if len(texts) > MOST_NOTES:
+            tell(f"{question}: and {len(texts) - MOST_NOTES} more, which --json writes.")
 
 
 def print_backends(comparison: Comparison) -> None:

@@ -60,6 +60,7 @@ class Box(Domain):
     """
 
     name: ClassVar[str] = "box"
+    also_called: ClassVar[tuple[str, ...]] = ("cube", "rectangle", "square")
     Options: ClassVar[type[PartOptions]] = BoxOptions
     options: BoxOptions
 

@@ -7,9 +7,9 @@ from rigidfluid.core.fluid.material import Newtonian
 from rigidfluid.core.mesh.size_interface import SizeField
 from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.selected import Selected
-from rigidfluid.core.nested.part_options import build_part, refuse_unread
+from rigidfluid.core.nested.part_options import build_part, read_options
+from rigidfluid.core.scene.all_errors import raise_all
 from rigidfluid.core.scene.scene import FluidTable, MeshTable
-from rigidfluid.core.scene.validation import read_table
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import FLUID_BACKEND, SIZE_FIELD, Registry
@@ -27,9 +27,11 @@ def scene_fluid(table: FluidTable, mesh: MeshTable | None, registry: Registry, d
         _refuse_flow(table, backend.part)
         return NoFluid(table.density or 0.0, backend, mesh, _size_fields(mesh, registry, dimension))
     condition = f"with backend {backend.part.name!r}"
-    for key in ("density", "viscosity"):
-        if getattr(table, key) is None:
-            raise SceneError(f"fluid.{key}", "nothing", f"a number above 0 {condition}", f"Add {key!r}.")
+    raise_all(
+        SceneError(f"fluid.{key}", "nothing", f"a number above 0 {condition}", f"Add {key!r}.")
+        for key in ("density", "viscosity")
+        if getattr(table, key) is None
+    )
     if mesh is None:
         raise SceneError("mesh", "nothing", f"a table {condition}", "Add [mesh] with size and size_body.")
     initial = table.initial
@@ -56,8 +58,7 @@ def _size_fields(mesh: MeshTable | None, registry: Registry, dimension: int) -> 
 def _backend(table: FluidTable, registry: Registry) -> Selected[FluidBackend]:
     """Class of the backend that a scene names, and its options."""
     part = registry.find(FLUID_BACKEND, table.backend)  # whoever reads results needs no more than its class
-    refuse_unread(table.options, [part], type(table).model_fields, "fluid")
-    return Selected(part, read_table(part.Options, table.options, "fluid"))
+    return Selected(part, read_options(part, table.options, type(table).model_fields, "fluid"))
 
 
 def _refuse_flow(table: FluidTable, backend: type[FluidBackend]) -> None:

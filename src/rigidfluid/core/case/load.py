@@ -8,10 +8,13 @@ from typing import Any
 
 from rigidfluid.core.case.auto_size import auto_size_body
 from rigidfluid.core.case.joint_kinds import read_drives
+from rigidfluid.core.case.part_tables import check_part_tables
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.case.time_factor import read_time_tables
+from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.earlier import tables_now
 from rigidfluid.core.scene.overrides import override
+from rigidfluid.core.scene.places import told_in_file
 from rigidfluid.core.scene.scene import AUTO, Scene, read_toml
 from rigidfluid.core.scene.validation import read_table
 from rigidfluid.registry import FLUID_BACKEND, Registry, missing_packages
@@ -33,7 +36,7 @@ def scene_from_dict(data: Mapping[str, Any]) -> Scene:
     Raises
     ------
     SceneError
-        If a key or value is not allowed, naming it, what is allowed and the remedy.
+        If a key or value is not allowed, naming it, what is allowed and the remedy; SceneErrors if there are several.
     PluginError
         If it names a part that is not there.
     """
@@ -56,10 +59,20 @@ def scene_of_results(data: Mapping[str, Any]) -> Scene:
 
 
 def _checked(data: Mapping[str, Any]) -> Scene:
-    tables = read_table(Scene, tables_now(data))
-    rows = {"boundary": read_time_tables(tables.boundary), "joint": read_drives(tables.joint)}
+    tables = _tables(tables_now(data))
+    with all_told() as ask:
+        rows = {"boundary": ask(read_time_tables, tables.boundary), "joint": ask(read_drives, tables.joint)}
     scene = tables.model_copy(update=rows)
     model_of(scene)
+    return scene
+
+
+def _tables(data: Mapping[str, Any]) -> Scene:
+    """Tables of a scene; where one is refused, the parts that they name are asked too."""
+    with all_told() as ask:
+        scene = ask(read_table, Scene, data)
+        if scene is None:
+            ask(check_part_tables, data, Registry.load())
     return scene
 
 
@@ -81,10 +94,13 @@ def load_scene(path: str | Path, overrides: Iterable[str] = ()) -> Scene:
     Raises
     ------
     SceneError
-        If the file cannot be read, is no TOML, or says something that is not allowed.
+        If the file cannot be read, is no TOML, or says something that is not allowed, and in which line; SceneErrors
+        if there are several such things.
     PluginError
         If it names a part that is not there.
     """
+    assignments = tuple(overrides)
     data = read_toml(Path(path))
-    override(data, overrides)
-    return scene_from_dict(data)
+    with told_in_file(Path(path), assignments):
+        override(data, assignments)
+        return scene_from_dict(data)

@@ -18,9 +18,9 @@ from rigidfluid.core.contact.detector_choice import choose_detector
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body, Detector, Part
 from rigidfluid.core.model.selected import Selected
-from rigidfluid.core.nested.part_options import build_part, own_options, refuse_unread
+from rigidfluid.core.nested.part_options import build_part, own_options, read_options, refuse_unread
+from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.scene import AUTO, BodyTable, BoundaryTable, ContactTable, DomainTable, Scene
-from rigidfluid.core.scene.validation import read_table
 from rigidfluid.core.setup.contact_laws import ContactLaw
 from rigidfluid.core.setup.model import ContactStepping, Model
 from rigidfluid.core.setup.rigid_body import RigidBody
@@ -69,13 +69,15 @@ def _kept(this: _ThisScene) -> Model:
 
 
 def _model(scene: Scene, registry: Registry) -> Model:
-    check_contact_table(scene.contact, scene.interaction)
-    domain = _domain(scene.domain, scene.boundary, registry, scene.dimension)
-    check_boundary_tables(scene.boundary, domain, scene.time.end)
-    mechanisms = placed_mechanisms(scene.mechanism, registry, scene.dimension)
-    bodies = tuple(_body(table, f"body.{n}", registry, scene.dimension) for n, table in enumerate(scene.body))
-    fluid = scene_fluid(scene.fluid, scene.mesh, registry, scene.dimension)
-    laws = scene_laws(scene.contact, scene.interaction, registry)
+    with all_told() as ask:
+        ask(check_contact_table, scene.contact, scene.interaction)
+        if domain := ask(_domain, scene.domain, scene.boundary, registry, scene.dimension):
+            ask(check_boundary_tables, scene.boundary, domain, scene.time.end)
+        mechanisms = ask(placed_mechanisms, scene.mechanism, registry, scene.dimension)
+        bodies = tuple(ask(_body, table, f"body.{n}", registry, scene.dimension) for n, table in enumerate(scene.body))
+        fluid = ask(scene_fluid, scene.fluid, scene.mesh, registry, scene.dimension)
+        laws = ask(scene_laws, scene.contact, scene.interaction, registry)
+        joints = ask(scene_joints, scene.joint, registry, scene.dimension)
     shapes = [body.shape for body in bodies] + [one.shape for each in mechanisms for one in each.mechanism.components]
     detector, why = _detector(scene.contact, registry, (shapes, domain), fluid.backend.part.wet, laws)
     model = Model(
@@ -86,7 +88,7 @@ def _model(scene: Scene, registry: Registry) -> Model:
         gravity=scene.fluid.gravity,
         boundary=condition_makers(scene.boundary, domain),
         mechanisms=mechanisms,
-        joints=scene_joints(scene.joint, registry, scene.dimension),
+        joints=joints,
         laws=tuple(laws),
         detector=detector,
         stepping=ContactStepping(
@@ -103,8 +105,7 @@ def _model(scene: Scene, registry: Registry) -> Model:
 
 def _domain(table: DomainTable, boundary: Sequence[BoundaryTable], registry: Registry, dimension: int) -> Domain:
     part = registry.get(DOMAIN, table.type)
-    refuse_unread(table.options, [part], type(table).model_fields, "domain")
-    domain = part(read_table(part.Options, table.options, "domain"), dimension)
+    domain = part(read_options(part, table.options, type(table).model_fields, "domain"), dimension)
     return domain.with_periodic(periodic_pairs(boundary, domain))
 
 

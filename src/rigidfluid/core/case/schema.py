@@ -15,10 +15,11 @@ from rigidfluid.registry import (
     MECHANISM,
     SIZE_FIELD,
     Entry,
+    Kind,
     Registry,
 )
 
-_TABLES = {
+_TABLES: dict[Kind[Any], tuple[str, ...]] = {
     FLUID_BACKEND: ("FluidTable",),
     BODY: ("BodyTable",),
     MECHANISM: ("MechanismTable",),
@@ -45,7 +46,12 @@ def json_schema() -> dict[str, Any]:
     """JSON Schema (draft 2020-12) of a scene file: each table that names a part takes that part's keys as well, and no
     others. Raises PluginError if a plug-in is not usable."""
     schema = Scene.model_json_schema()
-    for entry in Registry.load().entries:
+    registry = Registry.load()
+    for kind, tables in _TABLES.items():
+        for name in tables:
+            key = kind.field.rpartition(".")[2]
+            schema["$defs"][name]["properties"][key]["enum"] = ["auto"] * (kind is DETECTOR) + registry.names(kind)
+    for entry in registry.entries:
         _add_part(schema["$defs"], entry)
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 

@@ -9,6 +9,8 @@ from typing import Any, Protocol, TypeVar
 from pydantic import BaseModel
 
 from rigidfluid.core.model.interfaces import Part, PartOptions, SpatialPart
+from rigidfluid.core.scene.all_errors import all_told, raise_all
+from rigidfluid.core.scene.spelling import nearest
 from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_key
 from rigidfluid.errors import PluginError, SceneError
 from rigidfluid.registry import KINDS, Kind, Registry
@@ -31,7 +33,7 @@ class NamesPart(Protocol):
         """Keys of the part."""
 
 
-def own_options(part: type[Part], given: Mapping[str, Any], at: str) -> PartOptions:
+def own_options(part: type[Part], given: Mapping[Any, Any], at: str) -> PartOptions:
     """The part's own of the keys given; ``at`` is the place of their table in the scene."""
     own = fields_by_key(part.Options)
     return read_table(part.Options, {key: given[key] for key in given if key in own}, at)
@@ -40,11 +42,20 @@ def own_options(part: type[Part], given: Mapping[str, Any], at: str) -> PartOpti
 def refuse_unread(
     options: Mapping[str, Any], readers: Sequence[type[Part]], common: Mapping[str, Any], at: str, hint: str = ""
 ) -> None:
-    """Raise SceneError for a key that none of the ``readers`` has, and that is not ``common`` to all such tables."""
+    """Raise SceneError for keys that none of the ``readers`` has, and that is not ``common`` to all such tables."""
     known = set().union(*(fields_by_key(reader.Options) for reader in readers))
-    for key in options:
-        if key not in known:
-            raise unknown_key(f"{at}.{key}", known | set(common), hint)
+    raise_all([unknown_key(f"{at}.{key}", known | set(common), hint) for key in options if key not in known])
+
+
+def read_options(
+    part: type[Part], options: Mapping[str, Any], common: Mapping[str, Any], at: str
+) -> PartOptions:
+    """Options of a part whose table has keys that are ``common`` to all such tables; raises SceneError for all that are
+    unknown or refused. A misspelt key is told once, and not missed too."""
+    meant = {nearest(key, fields_by_key(part.Options)): value for key, value in options.items()}
+    with all_told() as ask:
+        ask(refuse_unread, options, [part], common, at)
+        return ask(own_options, part, {**meant, **options}, at)
 
 
 def build_part(kind: Kind[S], table: NamesPart, at: str, registry: Registry, dimension: int) -> S:
@@ -55,8 +66,7 @@ def build_part(kind: Kind[S], table: NamesPart, at: str, registry: Registry, dim
     assert isinstance(table, BaseModel)
     part = registry.get(kind, table.type, f"{at}.type")
     options = dict(table.model_extra or {})
-    refuse_unread(options, [part], type(table).model_fields, at)
-    read = read_table(part.Options, options, at)
+    read = read_options(part, options, type(table).model_fields, at)
     with told_at(at):
         return part(read, dimension)
 
@@ -67,8 +77,11 @@ def told_at(at: str) -> Iterator[None]:
     try:
         yield
     except (SceneError, PluginError) as error:
-        placeless = next(filter(error.subject.startswith, _PLACELESS), "")
-        if isinstance(error, PluginError) and not placeless:
+        if isinstance(error, PluginError) and _without_kind(error.subject) == error.subject:
             raise  # about a plug-in, and not a place in the scene
-        subject = f"{at}.{error.subject.removeprefix(placeless)}"
-        raise type(error)(subject, error.found, error.allowed, error.remedy) from None
+        raise error.renamed(lambda subject: f"{at}.{_without_kind(subject)}") from None
+
+
+def _without_kind(subject: str) -> str:
+    """Key of a part's table without the name of the table's kind."""
+    return subject.removeprefix(next(filter(subject.startswith, _PLACELESS), ""))

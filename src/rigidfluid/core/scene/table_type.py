@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, ValidationError
 
-from rigidfluid.core.scene.validation import scene_error
+from rigidfluid.core.scene.validation import scene_errors
 from rigidfluid.errors import ArgumentError
 
 if TYPE_CHECKING:
@@ -24,5 +24,5 @@ class TableType(_ModelType):
             try:
                 return super().__call__(*values, **keys)
             except ValidationError as error:
-                told = scene_error(cls, error, cls.__name__)
+                told = scene_errors(cls, error, cls.__name__)[0]
                 raise ArgumentError(told.subject, told.found, told.allowed, told.remedy) from None

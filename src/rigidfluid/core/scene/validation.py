@@ -12,6 +12,7 @@ from pydantic import AliasChoices, AliasPath, BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
+from rigidfluid.core.scene.all_errors import all_told, raise_all
 from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.core.scene.vectors import WRONG_LENGTH
 from rigidfluid.errors import SceneError
@@ -28,21 +29,34 @@ Location = tuple[int | str, ...]
 def read_table(model: type[M], data: Mapping[str, Any], at: str = "") -> M:
     """Validate a table, as TOML gives it, into an instance of ``model``; ``at`` is its place in the scene (``body.0``).
 
-    Raises SceneError at the first refused value.
+    Raises SceneError for all refused values.
     """
     text = _json(data, at)
     try:
         table = model.model_validate_json(text, context={})
     except ValidationError as error:
-        raise scene_error(model, error, at) from None
-    for field, number in _numbers(json.loads(text), at):
-        refuse_out_of_proportion(field, number)
+        raise_all(scene_errors(model, error, at))
+    with all_told() as ask:
+        for field, number in _numbers(json.loads(text), at):
+            ask(refuse_out_of_proportion, field, number)
     return table
 
 
-def scene_error(model: type[BaseModel], error: ValidationError, at: str) -> SceneError:
-    """Our error for the gravest of pydantic's complaints about a table at a place."""
-    return _told(model, sorted(error.errors(), key=_urgency), at)
+def scene_errors(model: type[BaseModel], error: ValidationError, at: str) -> list[SceneError]:
+    """Our errors for pydantic's complaints about a table at a place, in their order; of several about one value, or
+    about the values in it, the most urgent one."""
+    complaints = [one for one in error.errors() if one["type"] != "default_factory_not_called"]  # follows from others
+    told: dict[int, SceneError] = {}
+    for number in sorted(range(len(complaints)), key=lambda number: _urgency(complaints[number])):
+        one = _told(model, complaints[number], complaints, at)
+        if not any(_is_within(one.subject, other.subject) for other in told.values()):
+            told[number] = one
+    return [told[number] for number in sorted(told)]
+
+
+def _is_within(field: str, other: str) -> bool:
+    """Whether one of two fields is that of a value in the other, or both are the same."""
+    return f"{field}.".startswith(f"{other}.") or f"{other}.".startswith(f"{field}.")
 
 
 def _urgency(complaint: ErrorDetails) -> int:
@@ -131,9 +145,10 @@ def refuse_out_of_proportion(field: str, number: float) -> None:
         raise SceneError(field, found, allowed, "Choose units in which it is nearer to 1.")
 
 
-def _told(model: type[BaseModel], complaints: Sequence[ErrorDetails], at: str) -> SceneError:
-    """The error of the first complaint."""
-    complaint = complaints[0]
+def _told(
+    model: type[BaseModel], complaint: ErrorDetails, complaints: Sequence[ErrorDetails], at: str
+) -> SceneError:
+    """The error of one of several complaints."""
     if complaint["type"] == "extra_forbidden":
         return _needless_key(_place(model, complaint["loc"][:-1], at), str(complaint["loc"][-1]))
     place = _place(model, complaint["loc"], at)
@@ -144,7 +159,7 @@ def _told(model: type[BaseModel], complaints: Sequence[ErrorDetails], at: str) -
     if complaint["type"] == "missing" and isinstance(complaint["input"], Mapping):
         return _missing_key(place, complaint["input"], str(complaint["loc"][-1]))
     if complaint["type"] == "missing":
-        return _short_list(_place(model, complaint["loc"][:-1], at), complaints)
+        return _short_list(_place(model, complaint["loc"][:-1], at), complaint, complaints)
     return SceneError(place.field or "scene", value_text(complaint["input"]), allowed_by(complaint), _remedy(place))
 
 
@@ -221,9 +236,8 @@ def _unknown_type(place: _Place, table: Mapping[str, Any]) -> SceneError:
     return misspelt or SceneError(field, "nothing", allowed, f"Add the key {key!r}.")
 
 
-def _short_list(place: _Place, complaints: Sequence[ErrorDetails]) -> SceneError:
+def _short_list(place: _Place, first: ErrorDetails, complaints: Sequence[ErrorDetails]) -> SceneError:
     """Error for a list with too few entries: pydantic complains of each place that is empty."""
-    first = complaints[0]
     empty = sum(each["type"] == "missing" and each["loc"][:-1] == first["loc"][:-1] for each in complaints)
     allowed = f"{len(first['input']) + empty} entries"
     return SceneError(place.field, value_text(first["input"]), allowed, _remedy(place))

@@ -73,7 +73,7 @@ def tables(*boundary: Any, **changes: Any) -> dict[str, Any]:
 def test_a_table_is_told_what_its_type_does_not_have(table: Any, message: str) -> None:
     with pytest.raises(SceneError) as raised:
         scene_from_dict(tables(OUTLET, table))
-    assert str(raised.value).startswith(message)
+    assert any(line.startswith(message) for line in str(raised.value).splitlines())
     assert raised.value.remedy
 
 

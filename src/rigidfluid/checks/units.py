@@ -1,0 +1,41 @@
+"""Do gravity and densities belong to the same units, and how far does a body go?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from rigidfluid.checks.finding import Figures, Finding, figure
+from rigidfluid.core.mechanics.shapes import equal_volume_radius
+from rigidfluid.core.model.system import System
+from rigidfluid.core.setup.model import Model
+
+QUESTION = "units"
+
+_MIXED = (("g/cm³", (0.1, 30.0), "m/s²", 9.81, 981.0), ("kg/m³", (100.0, 30000.0), "cm/s²", 981.0, 9.81))
+"""Densities of liquids and solids in a unit, the Earth's gravity in another system's, and in that of the densities."""
+
+
+def unit_findings(model: Model, system: System) -> Iterator[Finding]:
+    """Tell speed, Reynolds number and way of the fastest body; a warning where gravity is the Earth's in m/s² and all
+    densities are as in g/cm³, or in cm/s² and as in kg/m³."""
+    speeds, fluid = system.loads.travel_speed, system.fluid
+    if fluid is None or speeds is None or not np.any(speeds > 0.0):
+        return
+    fastest = int(np.argmax(speeds))
+    name, speed = system.surfaces[fastest], float(speeds[fastest])
+    diameter = 2.0 * equal_volume_radius(system.bodies[fastest])
+    reynolds = speed * diameter * fluid.density / fluid.material.dynamic_viscosity
+    found: Figures = {"speed": speed, "reynolds": reynolds, "diameters": speed * model.time.end / diameter}
+    text = f"{name} may reach a speed of {figure(speed)} and a Reynolds number of {figure(reynolds)}, and go"
+    text += f" {figure(speed * model.time.end / diameter)} diameters until time.end"
+    densities = [fluid.density, *(body.density for body in model.bodies)]
+    gravity = float(np.linalg.norm(model.gravity or 0.0))
+    for unit, (least, most), other, earth, meant in _MIXED:
+        if abs(gravity / earth - 1.0) < 0.01 and all(least <= density <= most for density in densities):
+            text += f"; gravity is the Earth's in {other}, and densities are as in {unit}"
+            remedy = f"Set fluid.gravity to {meant:g}, or ignore this if it is intended."
+            yield Finding("warning", QUESTION, (name,), text, remedy, found)
+            return
+    yield Finding("note", QUESTION, (name,), text, found=found)

@@ -1,0 +1,90 @@
+"""A new scene: bodies in a box, with numbers chosen so that its check has nothing to warn of."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import ceil
+from typing import Literal
+
+from rigidfluid.checks import Finding, Report, check
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.errors import SceneError
+from rigidfluid.start.scene_text import UNITS, Numbers, scene_text
+
+Shape = Literal["sphere", "ellipsoid", "polygon"]
+Fluid = Literal["water", "oil", "glycerine", "none"]
+Units = Literal["cm", "m", "mm"]
+
+_TRIALS = 8
+_MARGIN = 0.9
+"""Share that is taken of what a check says would be enough at most."""
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """Wishes of a user: bodies of a ``shape`` in a box of a ``size`` [length], None: 2 cm wide; in a ``fluid``, with
+    ``gravity`` downwards [length/time²], None: that of the Earth."""
+
+    dimension: Literal[2, 3] = 2
+    bodies: int = 1
+    shape: Shape = "sphere"
+    size: float | None = None
+    fluid: Fluid = "oil"
+    gravity: float | None = None
+    units: Units = "cm"
+
+    @property
+    def width(self) -> float:
+        """Width of the box [length]."""
+        return 0.02 / UNITS[self.units][2] if self.size is None else self.size
+
+
+def new_scene(wishes: Wishes, name: str) -> tuple[str, Report]:
+    """Text of a scene, and its check, which warns of nothing.
+
+    Raises SceneError where no numbers are found with which that is so.
+    """
+    if wishes.shape == "polygon" and wishes.dimension == 3:
+        raise SceneError("--shape", "'polygon' in 3D", "sphere, ellipsoid", "Choose one, or --dimension 2.")
+    numbers = _paced(wishes, name)
+    for _ in range(_TRIALS):
+        text, report = _checked(wishes, name, numbers)
+        doubts = [finding for finding in report.findings if finding.grade != "note"]
+        if not doubts:
+            return text, report
+        numbers = _adopted(numbers, doubts)
+    remedy = "Choose another --size or --fluid; slow and small bodies in viscous fluids cost least."
+    raise SceneError("new", f"with these numbers a check still warns: {doubts[0].text}", None, remedy)
+
+
+def _paced(wishes: Wishes, name: str) -> Numbers:
+    """Numbers with an end and a step that suit the speeds that a check expects."""
+    first = Numbers.in_box(wishes.width, wishes.bodies, wishes.dimension)
+    _, report = _checked(wishes, name, first)
+    speed = max(row.impact_speed for row in report.bodies)
+    return replace(first, end=1.5 * first.height / speed, step=0.1 * first.radius / speed)
+
+
+def _checked(wishes: Wishes, name: str, numbers: Numbers) -> tuple[str, Report]:
+    text = scene_text(wishes, name, numbers)
+    return text, check(scene_from_dict(tomllib.loads(text)))
+
+
+def _adopted(numbers: Numbers, doubts: Sequence[Finding]) -> Numbers:
+    """Numbers that are enough for what a check doubts, where it says so."""
+    for doubt in doubts:
+        enough = {key: float(value) for key, value in doubt.enough.items() if isinstance(value, int | float)}
+        if "time_step" in enough:
+            numbers = replace(numbers, step=min(numbers.step, _MARGIN * enough["time_step"]))
+        elif "refinements" in enough:
+            numbers = replace(numbers, refinements=ceil(enough["refinements"]))
+        elif "size_body" in enough:
+            size = min(numbers.size_body or enough["size_body"], enough["size_body"])
+            numbers = replace(numbers, size_body=_MARGIN * size)
+        elif "restitution_stokes" in enough:
+            numbers = replace(numbers, restitution_stokes=enough["restitution_stokes"])
+        elif "range" in enough:
+            numbers = replace(numbers, range=min(numbers.range, _MARGIN * enough["range"]))
+    return numbers

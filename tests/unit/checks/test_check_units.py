@@ -1,0 +1,41 @@
+"""Gravity and densities of different units are found; the fastest body's speed is told."""
+
+from __future__ import annotations
+
+import pytest
+from falling import falling_disk
+from paths import SCENES
+
+from rigidfluid import load_scene
+from rigidfluid.checks import check
+from rigidfluid.checks.finding import Finding
+
+
+def told(density: float, gravity: float) -> Finding:
+    fluid = {"density": density, "viscosity": 0.1 * density, "gravity": [0.0, -gravity]}
+    findings = check(falling_disk(fluid=fluid, body={"density": 1.25 * density})).findings
+    (finding,) = [one for one in findings if one.question == "units"]
+    return finding
+
+
+def test_metres_in_a_scene_of_centimetres_are_found_with_speed_and_reynolds_number() -> None:
+    finding = told(1.0, 9.81)
+    assert finding.grade == "warning"
+    assert "gravity is the Earth's in m/s², and densities are as in g/cm³" in finding.text
+    assert finding.remedy.startswith("Set fluid.gravity to 981,")
+    speed = finding.found["speed"]
+    assert isinstance(speed, float)
+    assert finding.found["reynolds"] == pytest.approx(0.25 * speed / 0.1)
+    assert finding.found["diameters"] == pytest.approx(speed / 0.25)
+
+
+@pytest.mark.parametrize(
+    ("density", "gravity", "grade"),
+    [(1.0, 981.0, "note"), (1000.0, 981.0, "warning"), (1000.0, 9.81, "note"), (1.0, 10.0, "note")],
+)
+def test_one_system_is_not_warned_of(density: float, gravity: float, grade: str) -> None:
+    assert told(density, gravity).grade == grade
+
+
+def test_a_scene_without_a_fluid_is_not_asked() -> None:
+    assert [one for one in check(load_scene(SCENES / "dry_bounce.toml")).findings if one.question == "units"] == []

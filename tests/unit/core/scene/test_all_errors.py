@@ -1,0 +1,184 @@
+"""All errors of a scene at once, each with its place in the file."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+
+import pytest
+from paths import SCENES
+from typer.testing import CliRunner
+
+from rigidfluid import load_scene
+from rigidfluid.cli import app
+from rigidfluid.core.scene.all_errors import all_told
+from rigidfluid.core.scene.places import line_of
+from rigidfluid.errors import PluginError, RigidfluidError, SceneError, SceneErrors
+
+SIX = """\
+[scene]
+name = "six"
+dimension = 2
+
+[fluid]
+density = "one"
+viscosity = 0.1
+
+[domain]
+type = "box"
+lower = [0.0, 0.0]
+uper = [2.0, 6.0]
+
+[[body]]
+type = "disk"
+radius = 0.125
+density = 1.25
+position = [1.0, 4.0]
+
+[[body]]
+type = "sphere"
+radius = 0.125
+density = 1.25
+position = [
+  1.0,
+  2.0,
+  3.0,
+]
+
+[contact]
+law = "center"
+range = 0.015
+epsilon = 7e-5
+
+[mesh]
+size = 0.15
+size_body = 0.01
+
+[time]
+step = 0.001
+
+[output]
+every = 0.02
+"""
+PLACES = {
+    "fluid.density": 6,
+    "domain.uper": 12,
+    "body.0.type": 15,
+    "body.1.position": 24,
+    "contact.law": 31,
+    "time.end": 39,
+}
+
+
+def errors_of(text: str, tmp_path: Path, *assignments: str) -> tuple[RigidfluidError, ...]:
+    path = tmp_path / "scene.toml"
+    path.write_text(text)
+    with pytest.raises((SceneError, PluginError)) as caught:
+        load_scene(path, assignments)
+    return caught.value.errors if isinstance(caught.value, SceneErrors) else (caught.value,)
+
+
+def test_six_mistakes_are_told_at_once_with_their_lines_in_the_order_of_the_file(tmp_path: Path) -> None:
+    found = {error.subject: error.place for error in errors_of(SIX, tmp_path)}
+    assert found == {field: f"{tmp_path / 'scene.toml'}:{line}" for field, line in PLACES.items()}
+    assert list(found) == list(PLACES)
+
+
+def test_the_command_tells_each_in_a_line(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text(SIX)
+    result = CliRunner().invoke(app, ["check", str(path)])
+    assert result.exit_code == 2
+    head, *lines = result.stderr.splitlines()
+    assert head == "Error: 6 errors in the scene"
+    assert lines[0].startswith(f"{path}:6: fluid.density: found 'one'; allowed is a valid number.")
+    assert "Did you mean 'sphere'?" in lines[2]
+    assert len(lines) == 6
+
+
+def test_a_single_error_is_itself_with_its_line(tmp_path: Path) -> None:
+    text = (SCENES / "falling_disk.toml").read_text().replace("radius = 0.125", "raduis = 0.125")
+    (error,) = errors_of(text, tmp_path)
+    assert type(error) is SceneError
+    assert str(error).startswith(
+        f"{tmp_path / 'scene.toml'}:{text.splitlines().index('raduis = 0.125           # cm') + 1}: "
+    )
+
+
+def test_a_value_of_the_command_line_is_named_as_such(tmp_path: Path) -> None:
+    text = (SCENES / "falling_disk.toml").read_text()
+    found = errors_of(text, tmp_path, "body.0.density=-1", "time.step=no", "body.0.spring.stifness=3")
+    assert [error.place for error in found] == [
+        "--set body.0.density=-1", "--set body.0.spring.stifness=3", "--set time.step=no",
+    ]  # fmt: skip
+
+
+def test_what_the_model_refuses_comes_together_too(tmp_path: Path) -> None:
+    text = (SCENES / "falling_disk.toml").read_text()
+    text = text.replace('law = "centre"\n', 'law = "centre"\nstrength = 3\n').replace('on = "all"', 'on = "floor"')
+    text = text.replace("density = 1.0            # g/cm²\n", "").replace('"sphere"\nradius', '"ball"\nradius')
+    assert [error.subject for error in errors_of(text, tmp_path)] == ["fluid.density", "boundary.0.on", "body.0.type"]
+
+
+def test_errors_that_a_check_finds_later_have_their_line(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text((SCENES / "dry_bounce.toml").read_text().replace("[0.7, 0.55]", "[0.3, 0.55]"))
+    line = path.read_text()[: path.read_text().index("[0.3, 0.5]")].count("\n") + 1
+    for command in ("check", "run"):
+        result = CliRunner().invoke(app, [command, str(path)])
+        assert f"{path}:{line}: body.0.position: " in result.stderr, result.stderr
+
+
+@pytest.mark.parametrize(
+    ("field", "line"),
+    [
+        ("body.1.position.2", 24 + 3),
+        ("body.1", 20),
+        ("body.1.spring.rest", 20),
+        ("mesh.size", 36),
+        ("body 'disk'", None),
+        ("--set", None),
+        ("body.7", 14),
+    ],
+)
+def test_lines(field: str, line: int | None) -> None:
+    assert line_of(field, SIX.splitlines()) == line
+
+
+def test_lines_within_lists_and_texts_of_several_lines() -> None:
+    text = (
+        '[scene]\nname = """a\n[b]\n"""\n\n# rows\nrows = [\n  [1, 2],\n  { x = 1 },\n  [[\n    3\n  ]],\n]\nlast = 1\n'
+    )
+    fields = {"scene.name": 4, "scene.rows": 7, "scene.rows.1": 9, "scene.rows.1.x": 9, "scene.rows.2.0.0": 11}
+    assert {field: line_of(field, text.splitlines()) for field in fields} == fields
+    assert line_of("scene.last", text.splitlines()) == 14
+
+
+def test_no_line_where_the_text_is_not_toml() -> None:
+    assert line_of("scene.name", ["[scene", "name = 1"]) is None
+
+
+def test_questions_are_all_asked_and_the_same_error_is_told_once() -> None:
+    def refuse(field: str) -> None:
+        raise SceneError(field, 1, "2", "Mend it.")
+
+    def ask_all(*fields: str) -> None:
+        with all_told() as ask:
+            assert ask(len, "abc") == 3
+            for field in fields:
+                ask(refuse, field)
+
+    ask_all()
+    with pytest.raises(SceneErrors) as caught:
+        ask_all("b", "a", "b")
+    assert [error.subject for error in caught.value.errors] == ["b", "a"]
+    with pytest.raises(SceneError, match=r"^b: "):
+        ask_all("b", "b")
+
+
+def test_errors_pass_between_processes() -> None:
+    error = SceneError("body.0.type", 1, "2", "Mend it.")
+    error.place = "scene.toml:3"
+    both = SceneErrors([error, PluginError("contact.law", 1, "2", "Mend it.")])
+    assert str(pickle.loads(pickle.dumps(both))) == str(both)
+    assert "scene.toml:3: body.0.type" in str(both)
