@@ -93,7 +93,7 @@ def read_by_netgen(path: Path, dimension: int) -> MeshFile:
         vertices, regions = elements(container, corners)
         names = {int(k) + 1: str(name_of[shift](int(k) + shift)) for k in np.unique(regions)}
         cells.append(Cells(vertices, regions + 1, {k: name for k, name in names.items() if name != "default"}))
-    return MeshFile(np.array(mesh.Coordinates()), *cells)
+    return MeshFile(_in_three(mesh.Coordinates()), *cells)
 
 
 def _read_by_meshio(path: Path, dimension: int) -> MeshFile:
@@ -112,9 +112,13 @@ def _read_by_meshio(path: Path, dimension: int) -> MeshFile:
         found, allowed = f"{path} with cells of type {', '.join(strange)}", "triangles and tetrahedra"
         raise SceneError(FIELD, found, allowed, "Divide them into simplices.")
     numbers, names = _numbers(mesh, path), _names(mesh)
-    points = np.zeros((len(mesh.points), 3))
-    points[:, : mesh.points.shape[1]] = mesh.points
-    return MeshFile(points, *(_cells(mesh, numbers, names, k) for k in (dimension - 1, dimension)))
+    return MeshFile(_in_three(mesh.points), *(_cells(mesh, numbers, names, k) for k in (dimension - 1, dimension)))
+
+
+def _in_three(points: Any) -> FloatArray:
+    """Points (N, 2) or (N, 3) with three coordinates, (N, 3)."""
+    found = np.asarray(points, dtype=float)
+    return np.column_stack([found, np.zeros((len(found), 3 - found.shape[1]))])
 
 
 def _numbers(mesh: Any, path: Path) -> list[IntArray]:

@@ -1,0 +1,109 @@
+"""Runs that are killed at random moments, taken up, killed again and at last left alone: their results are those of an
+unbroken run to the last bit."""
+
+from __future__ import annotations
+
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from attacks.small_runs import DRY, WET, SmallRun, differences
+from attacks.trials import Trial
+
+SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
+PER_CHAIN = 5
+"""Kills of one run before it is left alone."""
+
+LONGEST = 300.0
+"""Time in which a command ends [s]."""
+
+
+@dataclass(frozen=True)
+class Kill:
+    """One kill of a chain: the signal, seconds after the start, the exit code, and what the command said."""
+
+    number: signal.Signals
+    after: float
+    code: int
+    said: str
+
+    @property
+    def orderly(self) -> bool:
+        """Whether the command ended as the signal, or its own end, asks, and without a traceback."""
+        codes = {-self.number, 0} if self.number == signal.SIGKILL else {-self.number, 130, 0}
+        return self.code in codes and "Traceback" not in self.said
+
+
+def attack_by_kills(count: int, start: int) -> Iterator[Trial]:
+    """Chains of kills, four dry ones and then one in a fluid."""
+    with tempfile.TemporaryDirectory() as name:
+        place, spans = Path(name), dict[str, float]()
+        number = 0
+        while number < count:
+            chain = number // PER_CHAIN
+            small = WET if chain % 5 == 4 else DRY
+            if small.name not in spans:
+                spans[small.name] = _run_unbroken(small, place / f"{small.name}, unbroken")
+            chosen = random.Random(f"{start} {chain}")
+            kills, other = _chain(small, place, min(PER_CHAIN, count - number), spans[small.name], chosen)
+            for kill in kills:
+                number += 1
+                yield _trial(small, chain, kill, other)
+
+
+def _run_unbroken(small: SmallRun, folder: Path) -> float:
+    """Run to the end twice, the first time for what is compiled; the seconds of the second time."""
+    for _ in range(2):
+        shutil.rmtree(folder, ignore_errors=True)
+        before = time.perf_counter()
+        subprocess.run(command(small, folder), check=True, stdout=subprocess.DEVNULL, timeout=LONGEST)
+    return time.perf_counter() - before
+
+
+def _chain(
+    small: SmallRun, place: Path, count: int, span: float, chosen: random.Random
+) -> tuple[list[Kill], list[str]]:
+    """Kills of one run, and the results in which it differs at last from the unbroken one."""
+    out, kills = place / "killed", list[Kill]()
+    while len(kills) < count:
+        kill = killed(command(small, out), chosen.choice(SIGNALS), chosen.uniform(0.0, span))
+        kills.append(kill)
+        if kill.code == 0:  # the end came first
+            shutil.rmtree(out)
+    last = subprocess.run(command(small, out), capture_output=True, text=True, check=False, timeout=LONGEST)
+    other = differences(out, place / f"{small.name}, unbroken") if last.returncode == 0 else [f"no end: {last.stderr}"]
+    shutil.rmtree(out, ignore_errors=True)
+    return kills, other
+
+
+def killed(command: list[str], number: signal.Signals, after: float) -> Kill:
+    """Start a command, and send it a signal some seconds after."""
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    try:
+        _, said = process.communicate(timeout=after)
+    except subprocess.TimeoutExpired:
+        process.send_signal(number)
+        _, said = process.communicate(timeout=LONGEST)
+    return Kill(number, after, process.returncode, said)
+
+
+def command(small: SmallRun, out: Path) -> list[str]:
+    """The run's command, which goes on where there is a checkpoint."""
+    settings = [part for assignment in small.assignments() for part in ("--set", assignment)]
+    resume = ["--resume"] if (out / "state.h5").exists() else []
+    return [sys.executable, "-m", "rigidfluid", "run", str(small.path), "--out", str(out), *settings, *resume]
+
+
+def _trial(small: SmallRun, chain: int, kill: Kill, other: list[str]) -> Trial:
+    what = f"chain {chain}: {kill.number.name} after {kill.after:.3f} s"
+    how = "ended first" if kill.code == 0 else "killed, and the same results"
+    if other or not kill.orderly:
+        how = f"other results: {', '.join(other)}" if other else f"exit code {kill.code}"
+    return Trial(f"{small.name}: {kill.number.name}", what, how, kill.said[-1000:], not other and kill.orderly)
