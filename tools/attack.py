@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import os
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterable
 from datetime import date
 from typing import Any
@@ -45,10 +45,18 @@ def attack(kind: str, count: int, seed: int) -> dict[str, Any]:
 
 def soak() -> dict[str, Any]:
     """The record of the long runs."""
-    from attacks.soak import soak
+    from attacks.soak import GROWTH, soak
 
     runs = soak()
-    return {"runs": runs, "failures": [run["run"] for run in runs if not run["held"]]}
+    return {"most": GROWTH, "runs": runs, "failures": [run["run"] for run in runs if not run["held"]]}
+
+
+def made(kind: str, count: int, seed: int) -> dict[str, Any]:
+    """The record of an attack, with what it was made by."""
+    command = f"python tools/attack.py {kind}" + ("" if kind == "soak" else f" --count {count} --seed {seed}")
+    origin = {"command": command, "date": f"{date.today()}", "commit": commit()}
+    found = soak() if kind == "soak" else attack(kind, count, seed)
+    return origin | {"cpu_seconds": round(sum(os.times()[:4]))} | found
 
 
 def commit() -> str:
@@ -67,10 +75,7 @@ def main() -> int:
     if given.kind == "page":
         print(f"wrote {write_attack_page()}")
         return 0
-    begun, counted = time.process_time(), given.count or KINDS.get(given.kind, ("", "", 0))[2]
-    origin = {"command": f"python {' '.join(sys.argv)}", "date": f"{date.today()}", "commit": commit()}
-    found = soak() if given.kind == "soak" else attack(given.kind, counted, given.seed)
-    record = origin | {"seed": given.seed, "cpu_seconds": round(time.process_time() - begun)} | found
+    record = made(given.kind, given.count or KINDS.get(given.kind, ("", "", 0))[2], given.seed)
     for line in record.get("groups", record.get("runs")):
         print({key: value for key, value in line.items() if key != "samples"})
     print(f"wrote {keep(given.kind, record)}")

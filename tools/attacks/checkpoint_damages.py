@@ -12,9 +12,10 @@ from typing import Any
 
 import h5py
 import numpy as np
+from numpy.random import Generator
+
 from attacks.damages import DAMAGES, cut_off, no_bytes, one_bit, some_bytes, words
 from attacks.small_runs import TABLES
-from numpy.random import Generator
 
 STATE = "state.h5"
 

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
+
 import rigidfluid
 from attacks.checkpoint_damages import HARMS, Folders
 from attacks.contained import FINISHED, REFUSED, Ending, Limits, contained
@@ -71,4 +72,4 @@ def _taken_up(small: SmallRun, folder: Path, unbroken: Path) -> str:
 
 def held(ending: Ending, folder: Path) -> bool:
     """Whether a run went on to the same results, or was refused by the name of a file in its folder."""
-    return ending == Ending(FINISHED, EQUAL) or ending.how == REFUSED and str(folder) in ending.subject
+    return ending == Ending(FINISHED, EQUAL) or (ending.how == REFUSED and str(folder) in ending.subject)

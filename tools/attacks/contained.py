@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import faulthandler
 import multiprocessing
 import os
 import resource
@@ -33,7 +34,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class Ending:
-    """How an attempt ended: ``how`` is `REFUSED`, `FINISHED`, or anything else; ``said`` its words, and ``subject`` what
+    """How an attempt ended: ``how`` is `REFUSED`, `FINISHED`, or anything else; ``said`` its words, ``subject`` what
     a refusal is about."""
 
     how: str
@@ -79,6 +80,7 @@ def _received(receiver: Connection, seconds: float) -> Any:
 
 
 def _attempt(work: Callable[[], str], sender: Connection, limits: Limits) -> None:
+    faulthandler.disable()  # the parent tells how it ended
     os.setsid()
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_AS, (limits.memory, resource.getrlimit(resource.RLIMIT_AS)[1]))

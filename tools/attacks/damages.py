@@ -110,7 +110,7 @@ DAMAGES: Mapping[str, tuple[Damage, ...]] = {
 
 def _replaced(data: bytes, random: Generator, places: list[re.Match[bytes]], values: tuple[bytes, ...]) -> bytes:
     """One of the places holds one of the values."""
-    binary = not places or b"\0" in data and bool(random.integers(0, 2))
+    binary = not places or (b"\0" in data and bool(random.integers(0, 2)))
     if binary:
         place = int(random.integers(0, max(len(data) - 4, 1)))
         return data[:place] + (b"\xff\xff\xff\x7f", b"\xff\xff\xff\xff")[int(random.integers(0, 2))] + data[place + 4 :]

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+
 from attacks.contained import FINISHED, FORK, REFUSED, Ending, Limits, contained
 from attacks.damages import DAMAGES
 from attacks.geometry_files import write_files
@@ -110,7 +111,7 @@ def _tried(
 def held(ending: Ending) -> bool:
     """Whether a file was read, or refused in words that name the key, or what is made of it."""
     named = ending.subject.startswith(("domain", "body", "boundary", "scene"))
-    return ending.how == FINISHED or ending.how == REFUSED and named
+    return ending.how == FINISHED or (ending.how == REFUSED and named)
 
 
 def _kind(path: Path) -> str:

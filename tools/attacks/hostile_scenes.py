@@ -9,8 +9,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from attacks.schema_values import SchemaValues, formulas, hostile_values, numbers
 from hypothesis import strategies as st
+
+from attacks.schema_values import SchemaValues, formulas, hostile_values, numbers
 from rigidfluid.core.scene.scene import read_toml
 
 SCENES = Path(__file__).resolve().parents[2] / "scenes"

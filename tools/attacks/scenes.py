@@ -10,13 +10,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from hypothesis import HealthCheck, Phase, given, seed
+from hypothesis import settings as hypothesis_settings
+from hypothesis import strategies as st
+
 import rigidfluid
 from attacks.contained import FINISHED, LONGEST, REFUSED, Ending, Limits, contained
 from attacks.hostile_scenes import BASES, SCENES, Hostile, changed_scenes, changed_texts, generated_scenes, settings
 from attacks.trials import Trial
-from hypothesis import HealthCheck, Phase, given, seed
-from hypothesis import settings as hypothesis_settings
-from hypothesis import strategies as st
 from rigidfluid.api import Scene, Simulation
 from rigidfluid.checks import check
 
@@ -105,7 +106,7 @@ def held(ending: Ending, data: str) -> bool:
     name, or a file."""
     place = re.split(r"[.\s]", ending.subject)[0]
     named = place and (place in TABLES or place in data or ending.subject.startswith("/"))
-    return ending.how == FINISHED or ending.how == REFUSED and bool(named)
+    return ending.how == FINISHED or (ending.how == REFUSED and bool(named))
 
 
 def _without_limits(count: int) -> hypothesis_settings:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from hypothesis import strategies as st
+
 from rigidfluid.core.case.schema import json_schema
 
 Schema = Mapping[str, Any]

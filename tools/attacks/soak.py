@@ -68,7 +68,8 @@ def _soaked(name: str, share: float) -> dict[str, Any]:
     grown = growth(samples)
     held = all(grown[key] <= most for key, most in GROWTH.items())
     shown = [asdict(sample) for sample in samples]
-    return {"run": name, "settings": settings_of(name, share), "samples": shown, "growth": grown, "held": held}
+    made = {"run": name, "scene": RUNS[name][0], "settings": settings_of(name, share)}
+    return made | {"samples": shown, "growth": grown, "held": held}
 
 
 def _run(scene: Path, settings: list[str]) -> list[Sample]:
@@ -81,7 +82,7 @@ def _run(scene: Path, settings: list[str]) -> list[Sample]:
         taken += 1
         if taken % every == 0:
             now = time.process_time()
-            samples.append(Sample(taken, _memory(), len(os.listdir("/proc/self/fd")), 1e3 * (now - before) / every))
+            samples.append(Sample(taken, _memory(), _open_files(), 1e3 * (now - before) / every))
             before = now
 
     with tempfile.TemporaryDirectory() as folder:
@@ -104,3 +105,7 @@ def _memory() -> float:
     """Resident memory of this process [MiB]."""
     pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
     return pages * os.sysconf("SC_PAGE_SIZE") / 2**20
+
+
+def _open_files() -> int:
+    return sum(1 for _ in Path("/proc/self/fd").iterdir())

@@ -24,8 +24,8 @@ _SIMPLICES = {"vertex": 0, "line": 1, "line3": 1, "triangle": 2, "triangle6": 2,
 _NUMBERS = ("gmsh:physical", "cell_tags", "medit:ref")
 """Names in meshio of the numbers of cells; in other formats these are the only data of whole numbers."""
 
-_MESHIO = (".msh", ".med", ".vtu", ".mesh", ".meshb")
-_FORMATS = (*_MESHIO, ".stl", ".vol", ".vol.gz")
+_NETGEN = (".vol", ".vol.gz")
+_FORMATS = (".msh", ".med", ".vtu", ".mesh", ".meshb", ".stl", *_NETGEN)
 
 
 @dataclass(frozen=True)
@@ -59,10 +59,14 @@ def read_mesh(path: Path, dimension: int) -> MeshFile:
         raise SceneError(FIELD, str(path), f"one of {', '.join(_FORMATS)}", remedy)
     if ending == ".stl":
         return _mesh_of_stl(path)
-    if not ending.startswith(".vol"):
-        return _read_by_meshio(path, dimension)
     require_survival("mesh", path, dimension)
-    return read_by_netgen(path, dimension)
+    return read_untried(path, dimension)
+
+
+def read_untried(path: Path, dimension: int) -> MeshFile:
+    """Read a mesh with a reader of others; a damaged file may end the process, or take all time and memory. Raises
+    SceneError."""
+    return (_read_by_netgen if path.name.lower().endswith(_NETGEN) else _read_by_meshio)(path, dimension)
 
 
 def _mesh_of_stl(path: Path) -> MeshFile:
@@ -71,8 +75,7 @@ def _mesh_of_stl(path: Path) -> MeshFile:
     return MeshFile(facets.points, Cells(facets.vertices, numbers, {}), _no_cells(3))
 
 
-def read_by_netgen(path: Path, dimension: int) -> MeshFile:
-    """Read a mesh of Netgen; a damaged one may end the process. Raises SceneError."""
+def _read_by_netgen(path: Path, dimension: int) -> MeshFile:
     from netgen import meshing
 
     mesh, verbosity = meshing.Mesh(), meshing.SetMessageImportance(0)
