@@ -139,7 +139,7 @@ def _table_scene(path: Path) -> dict[str, Any]:
     path.write_text("".join(f"{0.01 * n}, {0.1 * n}\n" for n in range(20)), encoding="ascii")
     domain = {"type": "box", "lower": [-9.0] * 2, "upper": [9.0] * 2}
     inflow = {"type": "velocity", "on": "left", "velocity": [1.0, 0.0], "over_time": {"file": str(path)}}
-    outflow = {"type": "pressure", "on": "right"}
+    outflow = {"type": "pressure", "on": "right", "pressure": 0.0}
     wet = {"fluid": {"density": 1.0, "viscosity": 1.0}, "mesh": {"size": 3.0, "size_body": 0.05}}
     body = {"type": "sphere", "radius": 0.1, "density": 1.0, "position": [0.0, 0.0]}
     return _scene(domain, body, 2) | wet | {"boundary": [inflow, outflow]}

@@ -16,27 +16,28 @@ PAGE = ROOT / "docs" / "validation" / "attack.md"
 
 MEANINGS = {
     "scenes": """
-Scenes that the JSON Schema allows, shipped ones with tables from there or with one to three changes, and scene files with
-damaged text. Each is read, all questions of `rigidfluid check` are asked, and without a fluid the first steps are taken.
-It holds if that comes to its end, or is refused by an error of rigidfluid that names the field, or what the scene itself
-names. Warnings count as errors.
+Scenes that the JSON Schema allows, shipped ones with tables from there or with one to three changes, and scene files
+with damaged text. Each is read, all questions of `rigidfluid check` are asked, and without a fluid the first steps
+are taken. It holds if that comes to its end, or is refused by an error of rigidfluid that names the field, or what
+the scene itself names. Warnings count as errors.
 """,
     "overrides": """
 The same with shipped scenes and one or two settings, as after `--set`.
 """,
     "geometry": """
-Files of geometry, and a table over time, with damage to their bytes, and other things in their place. A scene with such a
-file is read, checked and begun. It holds if that comes to its end, or is refused by the name of the key or the file.
+Files of geometry, and a table over time, with damage to their bytes, and other things in their place. A scene with
+such a file is read, checked and begun. It holds if that comes to its end, or is refused by the name of the key or the
+file.
 """,
     "checkpoints": """
 Folders of runs in which the checkpoint, the tables or other files are damaged, edited or exchanged, taken up with
-`--resume`. It holds if the run is refused by the name of a file in its folder, or ends with the tables of the unbroken
-run to the last bit. Edits that renew the digest of a checkpoint too are not tried: nothing could tell them.
+`--resume`. It holds if the run is refused by the name of a file in its folder, or ends with the tables of the
+unbroken run to the last bit. Edits that renew the digest of a checkpoint too are not tried: nothing could tell them.
 """,
     "kills": """
 Runs with checkpoints, which a signal ends at a random moment, five times each, taken up in between and at last left
-alone. A kill holds if the command ends without a traceback, by the signal or with exit code 130, and the tables of the
-last one are those of the unbroken run to the last bit. Where the end came first, the run is begun anew.
+alone. A kill holds if the command ends without a traceback, by the signal or with exit code 130, and the tables of
+the last one are those of the unbroken run to the last bit. Where the end came first, the run is begun anew.
 """,
 }
 """What is done, and when it holds."""
