@@ -110,6 +110,8 @@ def _read_by_meshio(path: Path, dimension: int) -> MeshFile:
             mesh = meshio.read(path)
     except (Exception, SystemExit) as error:  # meshio ends the process on some files, and raises anything on others
         raise _unreadable(path, error) from error
+    if np.ndim(mesh.points) != 2:
+        raise SceneError(FIELD, f"{path} without points", f"a mesh in {dimension} dimensions", "Rewrite it.")
     strange = sorted({block.type for block in mesh.cells} - set(_SIMPLICES))
     if strange:
         found, allowed = f"{path} with cells of type {', '.join(strange)}", "triangles and tetrahedra"
