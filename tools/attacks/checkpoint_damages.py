@@ -18,6 +18,7 @@ from attacks.damages import DAMAGES, cut_off, no_bytes, one_bit, some_bytes, wor
 from attacks.small_runs import TABLES
 
 STATE = "state.h5"
+_OTHERS = ("summary.json", "fields.pvd", "run.lock", "fields/000000.vtu")
 
 
 @dataclass(frozen=True)
@@ -64,7 +65,8 @@ def change_a_table(folders: Folders, random: Generator) -> str:
 
 def change_another_file(folders: Folders, random: Generator) -> str:
     """Change or remove what lies beside tables and checkpoint."""
-    name = ("summary.json", "fields.pvd", "run.lock", "fields/000000.vtu")[int(random.integers(0, 4))]
+    names = [name for name in _OTHERS if (folders.to_break / name).exists()]
+    name = names[int(random.integers(0, len(names)))]
     path, kind = folders.to_break / name, (no_bytes, words, cut_off, some_bytes, None)[int(random.integers(0, 5))]
     if kind is None or not path.stat().st_size:
         path.unlink()
