@@ -45,7 +45,7 @@ WET = SmallRun(
     "in a fluid",
     "falling_disk.toml",
     ("time.step=0.004", "mesh.size=0.4", "mesh.size_body=0.1", "output.every=0.008", "output.probes=[[0.5,0.5]]"),
-    0.048,
+    0.064,
 )
 
 

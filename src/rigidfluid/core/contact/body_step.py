@@ -41,9 +41,7 @@ class BodyStep:
     drag_loss: float = 0.0
 
 
-def arrived(
-    dynamics: BodyDynamics, impulse: Wrench, dissipated: float, actuator_work: float, count: int
-) -> BodyStep:
+def arrived(dynamics: BodyDynamics, impulse: Wrench, dissipated: float, actuator_work: float, count: int) -> BodyStep:
     """Result where ``dynamics`` is at the end of a step, or of a part of it, after ``count`` substeps."""
     motions = dynamics.motions(impulse)
     work = dissipated, actuator_work
