@@ -3,7 +3,6 @@ unbroken run to the last bit."""
 
 from __future__ import annotations
 
-import random
 import shutil
 import signal
 import subprocess
@@ -11,8 +10,10 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
+from random import Random
 
 from attacks.small_runs import DRY, WET, SmallRun, differences
 from attacks.trials import Trial
@@ -20,6 +21,9 @@ from attacks.trials import Trial
 SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 PER_CHAIN = 5
 """Kills of one run before it is left alone."""
+
+AT_ONCE = 4
+"""Chains that run at the same time."""
 
 LONGEST = 300.0
 """Time in which a command ends [s]."""
@@ -42,45 +46,42 @@ class Kill:
 
 
 def attack_by_kills(count: int, start: int) -> Iterator[Trial]:
-    """Chains of kills, four dry ones and then one in a fluid."""
-    with tempfile.TemporaryDirectory() as name:
-        place, spans = Path(name), dict[str, float]()
-        number = 0
-        while number < count:
-            chain = number // PER_CHAIN
-            small = WET if chain % 5 == 4 else DRY
-            if small.name not in spans:
-                spans[small.name] = _run_unbroken(small, place / f"{small.name}, unbroken")
-            chosen = random.Random(f"{start} {chain}")
-            kills, other = _chain(small, place, min(PER_CHAIN, count - number), spans[small.name], chosen)
-            for kill in kills:
-                number += 1
-                yield _trial(small, chain, kill, other)
+    """Chains of kills, each fifth one in a fluid; some at once, so that they disturb each other's time."""
+    with tempfile.TemporaryDirectory() as name, ThreadPoolExecutor(AT_ONCE) as pool:
+        place, chains = Path(name), range(-(-count // PER_CHAIN))
+        runs = {small.name: small for small in map(_run_of_chain, chains)}
+        spans = {small.name: _run_unbroken(small, place / small.name) for small in runs.values()}
+
+        def kill(chain: int) -> list[Trial]:
+            small, kills = _run_of_chain(chain), min(PER_CHAIN, count - chain * PER_CHAIN)
+            return _chain(small, place, chain, Random(f"{start} {chain}"), kills, spans[small.name])
+
+        for trials in pool.map(kill, chains):
+            yield from trials
+
+
+def _run_of_chain(chain: int) -> SmallRun:
+    return WET if chain % 5 == 4 else DRY
 
 
 def _run_unbroken(small: SmallRun, folder: Path) -> float:
-    """Run to the end twice, the first time for what is compiled; the seconds of the second time."""
-    for _ in range(2):
-        shutil.rmtree(folder, ignore_errors=True)
-        before = time.perf_counter()
-        subprocess.run(command(small, folder), check=True, stdout=subprocess.DEVNULL, timeout=LONGEST)
+    """Run to the end; the seconds that it takes."""
+    before = time.perf_counter()
+    subprocess.run(command(small, folder), check=True, stdout=subprocess.DEVNULL, timeout=LONGEST)
     return time.perf_counter() - before
 
 
-def _chain(
-    small: SmallRun, place: Path, count: int, span: float, chosen: random.Random
-) -> tuple[list[Kill], list[str]]:
-    """Kills of one run, and the results in which it differs at last from the unbroken one."""
-    out, kills = place / "killed", list[Kill]()
+def _chain(small: SmallRun, place: Path, chain: int, chosen: Random, count: int, span: float) -> list[Trial]:
+    """Kills of one run within a ``span``, and whether it comes to the results of the unbroken one at last."""
+    out, kills = place / f"chain {chain}", list[Kill]()
     while len(kills) < count:
-        kill = killed(command(small, out), chosen.choice(SIGNALS), chosen.uniform(0.0, span))
-        kills.append(kill)
-        if kill.code == 0:  # the end came first
+        kills.append(killed(command(small, out), chosen.choice(SIGNALS), chosen.uniform(0.0, span)))
+        if kills[-1].code == 0:  # the end came first
             shutil.rmtree(out)
     last = subprocess.run(command(small, out), capture_output=True, text=True, check=False, timeout=LONGEST)
-    other = differences(out, place / f"{small.name}, unbroken") if last.returncode == 0 else [f"no end: {last.stderr}"]
+    other = [f"no end: {last.stderr}"] if last.returncode else differences(out, place / small.name)
     shutil.rmtree(out, ignore_errors=True)
-    return kills, other
+    return [_trial(small, chain, kill, other) for kill in kills]
 
 
 def killed(command: list[str], number: signal.Signals, after: float) -> Kill:

@@ -6,6 +6,7 @@ import json
 import sys
 from collections.abc import Iterable
 from datetime import date
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -76,7 +77,9 @@ def _parts(records: dict[str, Any]) -> Iterable[str]:
     for kind, meaning in MEANINGS.items():
         yield f"## {TITLES[kind]}"
         yield meaning.strip()
-        yield _table(("", "tried", "held", "how it ended"), map(_group, records[kind]["groups"]))
+        yield _table(
+            ("", "tried", "held", "how it ended"), map(_group, sorted(records[kind]["groups"], key=itemgetter("group")))
+        )
         yield from _failures(records[kind]["failures"])
     yield f"## {TITLES['soak']}"
     yield from _soak(records["soak"])
