@@ -74,7 +74,7 @@ def _run_unbroken(small: SmallRun, folder: Path) -> float:
 def _chain(small: SmallRun, place: Path, chain: int, chosen: Random, count: int, span: float) -> list[Trial]:
     """Kills of one run within a ``span``, and whether it comes to the results of the unbroken one at last."""
     out, kills = place / f"chain {chain}", list[Kill]()
-    while len(kills) < count:
+    while sum(kill.code != 0 for kill in kills) < count:
         kills.append(killed(command(small, out), chosen.choice(SIGNALS), chosen.uniform(0.0, span)))
         if kills[-1].code == 0:  # the end came first
             shutil.rmtree(out)
