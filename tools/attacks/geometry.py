@@ -89,9 +89,10 @@ def _cases(scenes: Mapping[Path, dict[str, Any]], start: int) -> Iterator[Case]:
     number = start
     while True:
         for path, tables in scenes.items():
-            group = list(DAMAGES)[number % len(DAMAGES)]
-            kind = DAMAGES[group][number // len(DAMAGES) % len(DAMAGES[group])]
-            data = kind(path.read_bytes(), np.random.default_rng(number))
+            random = np.random.default_rng(number)
+            group = list(DAMAGES)[int(random.integers(0, len(DAMAGES)))]
+            kind = DAMAGES[group][int(random.integers(0, len(DAMAGES[group])))]
+            data = kind(path.read_bytes(), random)
             yield path, tables, group, f"{kind.__name__}, seed {number}", functools.partial(Path.write_bytes, data=data)
             number += 1
 
