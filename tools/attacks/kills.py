@@ -40,9 +40,10 @@ class Kill:
 
     @property
     def orderly(self) -> bool:
-        """Whether the command ended as the signal, or its own end, asks, and without a traceback."""
+        """Whether the command ended as the signal, or its own end, asks, and without a traceback of rigidfluid's;
+        before that is loaded, Python has one of its own."""
         codes = {-self.number, 0} if self.number == signal.SIGKILL else {-self.number, 130, 0}
-        return self.code in codes and "Traceback" not in self.said
+        return self.code in codes and not ("Traceback" in self.said and "rigidfluid" in self.said)
 
 
 def attack_by_kills(count: int, start: int) -> Iterator[Trial]:
