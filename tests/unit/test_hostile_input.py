@@ -98,3 +98,13 @@ def test_the_end_of_a_queue_or_a_terminal_leaves_a_summary(tmp_path: Path, numbe
     assert process.returncode == 130
     assert "Interrupted." in said
     assert '"status": "interrupted"' in (tmp_path / "summary.json").read_text()
+
+
+@POSIX
+def test_ctrl_c_while_the_command_line_is_loaded(tmp_path: Path) -> None:
+    (tmp_path / "typer.py").write_text("import signal\nsignal.raise_signal(signal.SIGINT)\n")
+    path = os.pathsep.join([str(tmp_path), *filter(None, sys.path)])
+    done = subprocess.run(
+        [*COMMAND], env=os.environ | {"PYTHONPATH": path}, capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (-signal.SIGINT, "")

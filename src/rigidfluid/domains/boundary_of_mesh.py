@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
-from rigidfluid.core.geometry.facets import Facets, place
+from rigidfluid.core.geometry.facets import LARGEST, Facets, place
 from rigidfluid.domains.mesh_file import FIELD, Cells, MeshFile
 from rigidfluid.domains.naming import Part, list_parts
 from rigidfluid.errors import SceneError
@@ -69,8 +69,8 @@ def boundary_of(file: MeshFile, dimension: int, fluid: int | str | None, scale: 
 
 def _in_space(file: MeshFile, dimension: int) -> FloatArray:
     points = file.points
-    if not np.isfinite(points).all():
-        raise SceneError(FIELD, "coordinates that are no numbers", "finite ones", "Rewrite the file.")
+    if not (np.abs(points) <= LARGEST).all():
+        raise SceneError(FIELD, "coordinates that are no such numbers", f"those up to {LARGEST:g}", "Rewrite the file.")
     if dimension == 2 and len(points) and np.abs(points[:, 2]).max() > _FLAT * np.abs(points).max():
         found = f"points off the plane z = 0, by up to {np.abs(points[:, 2]).max():.6g}"
         raise SceneError(FIELD, found, "a mesh in the plane, as the scene has 2 dimensions", "Choose another file.")

@@ -24,8 +24,8 @@ _SIMPLICES = {"vertex": 0, "line": 1, "line3": 1, "triangle": 2, "triangle6": 2,
 _NUMBERS = ("gmsh:physical", "cell_tags", "medit:ref")
 """Names in meshio of the numbers of cells; in other formats these are the only data of whole numbers."""
 
-_MESHIO = (".msh", ".med", ".vtu", ".mesh", ".meshb")
-_FORMATS = (*_MESHIO, ".stl", ".vol", ".vol.gz")
+_NETGEN = (".vol", ".vol.gz")
+_FORMATS = (".msh", ".med", ".vtu", ".mesh", ".meshb", ".stl", *_NETGEN)
 
 
 @dataclass(frozen=True)
@@ -59,10 +59,14 @@ def read_mesh(path: Path, dimension: int) -> MeshFile:
         raise SceneError(FIELD, str(path), f"one of {', '.join(_FORMATS)}", remedy)
     if ending == ".stl":
         return _mesh_of_stl(path)
-    if not ending.startswith(".vol"):
-        return _read_by_meshio(path, dimension)
     require_survival("mesh", path, dimension)
-    return read_by_netgen(path, dimension)
+    return read_untried(path, dimension)
+
+
+def read_untried(path: Path, dimension: int) -> MeshFile:
+    """Read a mesh with a reader of others; a damaged file may end the process, or take all time and memory. Raises
+    SceneError."""
+    return (_read_by_netgen if path.name.lower().endswith(_NETGEN) else _read_by_meshio)(path, dimension)
 
 
 def _mesh_of_stl(path: Path) -> MeshFile:
@@ -71,8 +75,7 @@ def _mesh_of_stl(path: Path) -> MeshFile:
     return MeshFile(facets.points, Cells(facets.vertices, numbers, {}), _no_cells(3))
 
 
-def read_by_netgen(path: Path, dimension: int) -> MeshFile:
-    """Read a mesh of Netgen; a damaged one may end the process. Raises SceneError."""
+def _read_by_netgen(path: Path, dimension: int) -> MeshFile:
     from netgen import meshing
 
     mesh, verbosity = meshing.Mesh(), meshing.SetMessageImportance(0)
@@ -93,7 +96,7 @@ def read_by_netgen(path: Path, dimension: int) -> MeshFile:
         vertices, regions = elements(container, corners)
         names = {int(k) + 1: str(name_of[shift](int(k) + shift)) for k in np.unique(regions)}
         cells.append(Cells(vertices, regions + 1, {k: name for k, name in names.items() if name != "default"}))
-    return MeshFile(np.array(mesh.Coordinates()), *cells)
+    return MeshFile(_in_three(mesh.Coordinates()), *cells)
 
 
 def _read_by_meshio(path: Path, dimension: int) -> MeshFile:
@@ -107,14 +110,20 @@ def _read_by_meshio(path: Path, dimension: int) -> MeshFile:
             mesh = meshio.read(path)
     except (Exception, SystemExit) as error:  # meshio ends the process on some files, and raises anything on others
         raise _unreadable(path, error) from error
+    if np.ndim(mesh.points) != 2:
+        raise SceneError(FIELD, f"{path} without points", f"a mesh in {dimension} dimensions", "Rewrite it.")
     strange = sorted({block.type for block in mesh.cells} - set(_SIMPLICES))
     if strange:
         found, allowed = f"{path} with cells of type {', '.join(strange)}", "triangles and tetrahedra"
         raise SceneError(FIELD, found, allowed, "Divide them into simplices.")
     numbers, names = _numbers(mesh, path), _names(mesh)
-    points = np.zeros((len(mesh.points), 3))
-    points[:, : mesh.points.shape[1]] = mesh.points
-    return MeshFile(points, *(_cells(mesh, numbers, names, k) for k in (dimension - 1, dimension)))
+    return MeshFile(_in_three(mesh.points), *(_cells(mesh, numbers, names, k) for k in (dimension - 1, dimension)))
+
+
+def _in_three(points: Any) -> FloatArray:
+    """Points (N, 2) or (N, 3) with three coordinates, (N, 3)."""
+    found = np.asarray(points, dtype=float)
+    return np.column_stack([found, np.zeros((len(found), 3 - found.shape[1]))])
 
 
 def _numbers(mesh: Any, path: Path) -> list[IntArray]:

@@ -1,8 +1,9 @@
-"""Trials of files in a process of their own: on damaged ones Netgen and Open CASCADE end the process, or never end.
+"""Trials of files in a process of their own: on damaged ones Netgen, Open CASCADE, HDF5 and meshio end the process, or
+never end.
 
     python -m rigidfluid.domains.trial KIND FILE DIMENSION BYTES
 
-reads a file as ``cad`` or as a ``mesh`` of Netgen, with at most so much memory; exit code 3 if that is too little.
+reads a file as ``cad`` or as a ``mesh``, with at most so much memory; exit code 3 if that is too little.
 """
 
 from __future__ import annotations
@@ -56,15 +57,17 @@ def _outcome(kind: Kind, path: Path, dimension: int, size: int, _changed: int) -
 def main(kind: Kind, path: str, dimension: str, most: str) -> int:
     """Read a file; 3 where memory is not enough."""
     from rigidfluid.domains.cad import probe_cad
-    from rigidfluid.domains.mesh_file import read_by_netgen
+    from rigidfluid.domains.mesh_file import read_untried
 
     if sys.platform != "win32":
         import resource
 
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        resource.setrlimit(resource.RLIMIT_AS, (int(most), int(most)))
+        hard = resource.getrlimit(resource.RLIMIT_AS)[1]
+        limit = int(most) if hard == resource.RLIM_INFINITY else min(int(most), hard)
+        resource.setrlimit(resource.RLIMIT_AS, (limit, hard))
     try:
-        (probe_cad if kind == "cad" else read_by_netgen)(Path(path), int(dimension))
+        (probe_cad if kind == "cad" else read_untried)(Path(path), int(dimension))
     except MemoryError:
         return _TOO_LITTLE
     except SceneError:  # told by the process that is to use the file

@@ -34,7 +34,7 @@ def test_every_page_says_what_makes_it(name: str) -> None:
     if name in generators():
         assert f"python docs/make_validation.py {name}`" in page or f"docs/make_validation.py {name}`" in page
     else:
-        script = re.search(r"(?:^|`)python (benchmarks/\w+\.py)", page, re.M)
+        script = re.search(r"(?:^|`)python ((?:benchmarks|tools)/\w+\.py)", page, re.M)
         assert script
         assert (ROOT / script[1]).exists()
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -69,6 +70,39 @@ def test_a_mesh_of_wrong_numbers_is_refused(tmp_path: Path, text: str, monkeypat
     path.write_text(text)
     with pytest.raises(SceneError, match=r"domain.file: found .*wrong.vol"):
         MeshDomain(MeshOptions(file=str(path)), 3)
+
+
+@pytest.mark.parametrize("ending", [".msh", ".med", ".vtu", ".mesh", ".meshb", ".vol", ".vol.gz"])
+def test_a_mesh_is_read_within_limits_whoever_reads_it(
+    tmp_path: Path, ending: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(trial, "SECONDS", 0.01)
+    path = tmp_path / f"mesh{ending}"
+    path.write_text("any")
+    with pytest.raises(SceneError, match=r"domain.file: found .*whose reading took more than 0.01 seconds"):
+        MeshDomain(MeshOptions(file=str(path)), 3)
+
+
+@pytest.mark.parametrize(
+    "text", ["$Comments\n", "$Nodes\n1\n1 1e300 0 0\n$EndNodes\n$Elements\n1\n1 1 2 1 1 1 1\n$EndElements\n"]
+)
+def test_a_mesh_without_points_or_with_huge_ones_is_refused(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "wrong.msh"
+    path.write_text(f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n{text}")
+    with pytest.raises(
+        SceneError, match=r"domain.file: found (.*wrong.msh without points|coordinates that are no such)"
+    ):
+        MeshDomain(MeshOptions(file=str(path)), 2)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a process cannot be limited there")
+def test_a_file_is_tried_where_memory_is_limited_already(drawn: Path) -> None:
+    """Nine tenths of a file that ends its reader, under a limit of the shell below the one of trials."""
+    drawn.write_bytes(drawn.read_bytes()[: int(0.9 * drawn.stat().st_size)])
+    command = f"ulimit -v {1 << 22}; {sys.executable} -m rigidfluid.domains.trial cad {drawn} 3 {1 << 33}"
+    ended = subprocess.run(["sh", "-c", command], capture_output=True, text=True, check=False)
+    assert "ValueError" not in ended.stderr
+    assert ended.returncode not in (0, 1)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are neither pipes nor devices there")

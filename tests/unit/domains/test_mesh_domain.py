@@ -69,6 +69,13 @@ def test_a_file_of_netgen_needs_no_other_package(tmp_path: Path, name: str, monk
     assert domain.volume == pytest.approx(np.pi * (8.0 + 1.5 * np.pi), rel=0.2)
 
 
+def test_a_plane_mesh_of_netgen(tmp_path: Path) -> None:
+    from netgen import occ
+
+    occ.OCCGeometry(occ.Rectangle(2.0, 1.0).Face(), dim=2).GenerateMesh(maxh=0.5).Save(str(tmp_path / "plane.vol"))
+    assert meshed(tmp_path / "plane.vol", 2, faces={"wall": (1, 2, 3, 4)}).volume == pytest.approx(2.0, rel=1e-12)
+
+
 def test_a_package_that_is_missing_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(__import__("sys").modules, "meshio", None)
     (tmp_path / "tube.msh").touch()

@@ -9,6 +9,9 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 
+LARGEST = 1e30
+"""Largest coordinate that is read from a file, as of numbers in a scene: powers of it stay finite [length]."""
+
 
 @dataclass(frozen=True)
 class Facets:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.geometry.facets import Facets
+from rigidfluid.core.geometry.facets import LARGEST, Facets
 from rigidfluid.errors import SceneError
 from rigidfluid.regular_file import MOST_GEOMETRY, require_regular
 
@@ -28,8 +28,9 @@ def read_stl(path: Path, key: str) -> Facets:
     except OSError as error:
         raise SceneError(key, f"{path}: {error.strerror}", "a readable STL file", "Check the path.") from None
     corners = _binary(content) if _is_binary(content) else _text(content, path, key)
-    if len(corners) == 0 or not np.isfinite(corners).all():
-        raise SceneError(key, f"{path} with no triangles, or with no numbers", "a surface", "Rewrite the file.")
+    if len(corners) == 0 or not (np.abs(corners) <= LARGEST).all():
+        found, allowed = f"{path} with no triangles, or with no numbers", f"triangles, coordinates up to {LARGEST:g}"
+        raise SceneError(key, found, allowed, "Rewrite the file.")
     points, numbers = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
     return Facets(points, numbers.reshape(-1, 3).astype(np.int64), np.zeros(len(corners), dtype=np.int64))
 

@@ -38,7 +38,7 @@ FILES = (
     *(Files(f"`{name}.csv`", rf"{name}\.csv", "each step", content) for name, content in _TABLES.items()),
     Files(
         "`fields.pvd`, `fields/*.vtu`",
-        r"fields\.pvd|fields/\d{6,}(\.\d+)?\.p?vtu",
+        r"fields\.pvd(\.part)?|fields/\d{6,}(\.\d+)?\.p?vtu",
         "each `output.every`",
         "velocity and pressure; not without a fluid",
     ),

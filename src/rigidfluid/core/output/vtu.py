@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidfluid.core.model.types import Fields
+from rigidfluid.core.output.disk import replace_text
 from rigidfluid.errors import OutputError
 
 _QUADRATIC = {6: 22, 10: 24}  # VTK's numbers for the quadratic triangle and tetrahedron
@@ -67,7 +68,7 @@ def write_pvd(path: Path, times: Sequence[float], files: Sequence[str]) -> None:
     collection = ET.SubElement(root, "Collection")
     for time, file in zip(times, files, strict=True):
         ET.SubElement(collection, "DataSet", timestep=repr(time), part="0", file=file)
-    ET.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+    replace_text(path, ET.tostring(root, encoding="utf-8", xml_declaration=True).decode())
 
 
 def read_vtu(path: Path) -> Fields:

@@ -28,7 +28,7 @@ from rigidfluid.core.output.records import Records, columns
 from rigidfluid.core.output.results_folder import clear, take_folder
 from rigidfluid.core.output.run_files import RUN
 from rigidfluid.core.output.tables import Prefix, Table, table_path
-from rigidfluid.core.output.vtu import read_pvd, write_pvd, write_pvtu, write_vtu
+from rigidfluid.core.output.vtu import write_pvd, write_pvtu, write_vtu
 from rigidfluid.errors import OutputError
 
 CHECKPOINT, SUMMARY, SERIES, FIELDS = "state.h5", "summary.json", "fields.pvd", "fields"
@@ -64,7 +64,7 @@ class Writer:
         with self._writing_once(out) as is_mine:
             if is_mine:
                 self._mark = _taken(out, new=resumed is None)
-                self._series = [] if resumed is None else _series(out)[: len(resumed.times)]
+                self._series = [] if resumed is None else _series(out, len(resumed.times))
         for name, names in columns_by_table.items():
             path = table_path(out, name)
             with self._writing_once(path) as is_mine:
@@ -97,6 +97,8 @@ class Writer:
         with self._writing_once(self.out / name) as is_mine:
             if is_mine and pieces:
                 write_pvtu(self.out / name, pieces)
+            elif is_mine:
+                (self.out / f"{FIELDS}/{stem}.pvtu").unlink(missing_ok=True)  # of several ranks that were killed
             if is_mine:
                 write_pvd(self.out / SERIES, times, self._series)
 
@@ -214,6 +216,7 @@ def _checkpoints(out: Path) -> list[Path]:
     return [out / CHECKPOINT, *(others[rank] for rank in sorted(others))]
 
 
-def _series(out: Path) -> list[str]:
-    """The files of fields that a run has listed, from its folder on."""
-    return [f"{FIELDS}/{path.name}" for _, path in read_pvd(out / SERIES)] if (out / SERIES).exists() else []
+def _series(out: Path, count: int) -> list[str]:
+    """The files of the first ``count`` fields of a run, from its folder on; several ranks have listed theirs."""
+    names = (f"{FIELDS}/{number:06d}" for number in range(count))
+    return [f"{name}.{'pvtu' if (out / f'{name}.pvtu').exists() else 'vtu'}" for name in names]

@@ -114,10 +114,27 @@ def remembered_interrupt(ranks: Ranks) -> Iterator[Callable[[], None]]:
     numbers = [number for number, own in heard if signal.getsignal(number) is own]
     before = {number: signal.signal(number, remember) for number in numbers}
     try:
-        yield ask
+        with _other_losses_told():
+            yield ask
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+@contextmanager
+def _other_losses_told() -> Iterator[None]:
+    """Let Python tell of exceptions that it ignores, but for interrupts: those are remembered."""
+    before = sys.unraisablehook
+
+    def tell(lost: sys.UnraisableHookArgs) -> None:
+        if lost.exc_type is not KeyboardInterrupt:
+            before(lost)
+
+    sys.unraisablehook = tell
+    try:
+        yield
+    finally:
+        sys.unraisablehook = before
 
 
 def one_openblas_thread() -> AbstractContextManager[object]:

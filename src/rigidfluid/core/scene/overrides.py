@@ -19,7 +19,7 @@ def override(data: dict[str, Any], assignments: Iterable[str]) -> None:
     unknown key."""
     for assignment in assignments:
         path, equals, text = assignment.partition("=")
-        if not equals or not path.strip():
+        if not equals or not all(key.strip() for key in path.split(".")):
             raise SceneError("--set", repr(assignment), "key=value", "For instance: --set contact.range=0.02")
         assign(data, path.strip(), _value(path.strip(), text.strip()))
 

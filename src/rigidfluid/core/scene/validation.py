@@ -105,7 +105,7 @@ def unknown_key(field: str, known: Iterable[str], hint: str = "") -> SceneError:
     key = field.rpartition(".")[2]
     keys = sorted(known)
     remedy = suggestion(key, keys) or hint or "Remove it."
-    return SceneError(field, "a key that nothing reads", ", ".join(keys), remedy)
+    return SceneError(field if key else f"{field}''", "a key that nothing reads", ", ".join(keys), remedy)
 
 
 def value_text(value: object) -> str:

@@ -10,6 +10,7 @@ import h5py
 import numpy as np
 import pytest
 from dry_scenes import ball, dry_scene
+from falling import falling_disk
 
 import rigidfluid
 from rigidfluid.core.output.sealed_file import BLOCK
@@ -103,6 +104,29 @@ def test_a_table_that_is_other_than_the_checkpoint_says(folder: Path, name: str)
     refuse_to_resume(folder, name, "other content")
     path.unlink()
     refuse_to_resume(folder, name, "no such file")
+
+
+@pytest.mark.parametrize("damage", [Path.unlink, lambda path: path.write_text("<VTKFile"), lambda path: path.touch()])
+def test_a_list_of_fields_is_made_again(tmp_path: Path, damage: Callable[[Path], object]) -> None:
+    """It follows from the checkpoint and the fields that are there."""
+    whole, broken = tmp_path / "whole", tmp_path / "broken"
+    rigidfluid.run(fall(0.024), whole)
+    rigidfluid.run(fall(0.008), broken)
+    damage(broken / "fields.pvd")
+    (broken / "fields" / "000002.pvtu").write_text("of several processes that were killed here")
+    rigidfluid.run(fall(0.016), broken, resume=True)
+    rigidfluid.run(fall(0.024), broken, resume=True)
+    assert (broken / "fields.pvd").read_bytes() == (whole / "fields.pvd").read_bytes()
+
+
+def fall(end: float) -> Scene:
+    """A disk in a fluid on a coarse mesh, with fields at each second step."""
+    return falling_disk(
+        fluid={},
+        time={"step": 0.004, "end": end},
+        mesh={"size": 0.5, "size_body": 0.12},
+        output={"every": 0.008},
+    )
 
 
 def test_lines_behind_the_checkpoint_are_cut_off(folder: Path) -> None:

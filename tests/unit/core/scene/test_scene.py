@@ -367,6 +367,8 @@ def test_override(assignment: str, path: tuple[Any, ...], value: object) -> None
     ("assignment", "text"),
     [
         ("time.end", "key=value"),
+        (".=1", "key=value"),
+        ("time..end=1", "key=value"),
         ("time.end=a=b", "a TOML value, or one word"),
         ("time.end=1\ntime.step=1", "a TOML value, or one word"),
         ("body.1.density=1", "a number from 0 to 0"),

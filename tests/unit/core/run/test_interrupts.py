@@ -1,0 +1,45 @@
+"""An interrupt that Python would lose is raised once more, and not told of as ignored."""
+
+from __future__ import annotations
+
+import signal
+import sys
+
+import pytest
+
+from rigidfluid.core.model.ranks import ALONE
+from rigidfluid.core.run.process import remembered_interrupt
+
+
+class Finalised:
+    """Gets a signal while it is finalised."""
+
+    def __del__(self) -> None:
+        signal.raise_signal(signal.SIGINT)
+
+
+def test_an_interrupt_in_a_finaliser_comes_later(monkeypatch: pytest.MonkeyPatch) -> None:
+    told: list[object] = []
+    monkeypatch.setattr(sys, "unraisablehook", told.append)
+    with remembered_interrupt(ALONE) as interrupt_if_lost:
+        interrupt_if_lost()
+        Finalised()
+        with pytest.raises(KeyboardInterrupt):
+            interrupt_if_lost()
+    assert not told
+    assert sys.unraisablehook == told.append
+
+
+class Faulty:
+    """Fails while it is finalised."""
+
+    def __del__(self) -> None:
+        raise ValueError
+
+
+def test_another_error_in_a_finaliser_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    told: list[object] = []
+    monkeypatch.setattr(sys, "unraisablehook", told.append)
+    with remembered_interrupt(ALONE):
+        Faulty()
+    assert len(told) == 1
