@@ -212,8 +212,8 @@ def main() -> None:
         arguments.json.write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
     if arguments.page:
         command = " ".join(["python benchmarks/backends.py", *sys.argv[1:]])
-        write_page(arguments.page, page(found, command))
         plot(found, arguments.page.with_suffix(".png"))
+        write_page(arguments.page, page(found, command))
 
 
 if __name__ == "__main__":

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import datetime
-import json
 import shutil
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from matplotlib.figure import Figure
 
 import rigidfluid
-from page_tools.inputs import Inputs
-from page_tools.places import INPUTS, PAGES
+from page_tools.places import PAGES, RECORDS
+from page_tools.provenance import commit, file_digest, texts
+from page_tools.record import Record
+from page_tools.work import Work
+from rigidfluid.core.run.summary import versions
 
 FEW = 6
 """So many runs are named."""
@@ -49,11 +51,14 @@ def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
-def write(page: Page, name: str, outdated: Mapping[str, list[str]], folder: Path = PAGES) -> None:
-    """Write a page and its figures, with its date, its command, and which of its runs are older than its sources."""
+def write(page: Page, name: str, work: Work, folder: Path = PAGES) -> None:
+    """Write a page, its figures and its record: date, commit, command, CPU time, and which of its runs are older."""
     command = page.command or f"python docs/make_validation.py {name}"
-    made = f"Made on {datetime.date.today()} by `{command}`, rigidfluid {rigidfluid.__version__}."
-    parts = [f"# {page.title}", " ".join([made, *_about_older(outdated)])]
+    record = Record(
+        made=str(datetime.date.today()), commit=commit(), cpu_seconds=round(work.cpu_seconds, 1), versions=versions(),
+        sources=work.sources, texts=texts(), runs=work.runs,
+    )  # fmt: skip
+    parts = [f"# {page.title}", " ".join([_told(record, command, name), *_about_older(work.outdated)])]
     for suffix, figure in page.figures.items():
         picture = folder / f"{name}{suffix}.png"
         if not suffix:
@@ -62,19 +67,26 @@ def write(page: Page, name: str, outdated: Mapping[str, list[str]], folder: Path
             raise ValueError(f"the text of {name} does not show {picture.name}")
         _save(figure, picture)
     (folder / f"{name}.md").write_text("\n\n".join([*parts, page.text.strip()]) + "\n", encoding="utf-8")
+    files = {path.name: file_digest(path) for path in [folder / f"{name}.md", *pictures(page, name, folder)]}
+    replace(record, files=files).write(name, folder / RECORDS.name)
 
 
-def write_inputs(name: str, inputs: Inputs, folder: Path = INPUTS) -> None:
-    """Write what a page was made from."""
-    folder.mkdir(exist_ok=True)
-    (folder / f"{name}.json").write_text(json.dumps(dict(sorted(inputs.items())), indent=0) + "\n", encoding="utf-8")
+def pictures(page: Page, name: str, folder: Path) -> list[Path]:
+    """Files of the figures of a page."""
+    return [folder / f"{name}{suffix}.png" for suffix in page.figures]
 
 
-def _about_older(outdated: Mapping[str, list[str]]) -> Iterable[str]:
+def _told(record: Record, command: str, name: str) -> str:
+    return (
+        f"Made on {record.made} at commit {record.commit} by `{command}`, rigidfluid {rigidfluid.__version__}, in "
+        f"{record.cpu_seconds:.0f} s of CPU time; [runs and versions]({RECORDS.name}/{name}.json)."
+    )
+
+
+def _about_older(outdated: Mapping[str, str]) -> Iterable[str]:
     if outdated:
-        changed = {file for files in outdated.values() for file in files}
         which = ", ".join(outdated) if len(outdated) <= FEW else f"{len(outdated)}"
-        yield f"Of its runs, {which} are older: {len(changed)} of their sources have changed since."
+        yield f"Of its runs, {which} are older, made at {', '.join(sorted(set(outdated.values())))}."
 
 
 def _save(figure: Figure | Path, path: Path) -> None:

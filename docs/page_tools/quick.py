@@ -1,0 +1,3 @@
+"""The quick pages, which `make pages` makes anew."""
+
+QUICK = ("dfg_cylinder", "walls")
