@@ -12,7 +12,7 @@ WITH_PLUGINS := tests/unit/core/run/test_resumption.py tests/unit/core/run/test_
 WITH_DOLFINX := tests/contract/test_fluid_backends.py tests/unit/backends/test_dolfinx.py \
 	tests/unit/benchmarks/test_backends_benchmark.py tests/unit/benchmarks/test_parallel_benchmark.py tests/mpi
 
-.PHONY: run test test-long test-plugins test-dolfinx install lint validate stale bench clean
+.PHONY: run test test-long test-plugins test-dolfinx install lint pages validate nightly stale bench clean
 
 run: install
 	$(BIN)/rigidfluid run scenes/falling_disk.toml
@@ -34,12 +34,21 @@ test-dolfinx:
 	tools/dolfinx make
 	tools/dolfinx run python3 -m pytest -m 'not validation' $(WITH_DOLFINX)
 
-validate: .venv/.installed-plugins
-	$(BIN)/pytest -m validation
-	cd plugins/rigidfluid-lammps && $(CURDIR)/$(BIN)/python -m pytest -m validation
-	$(BIN)/python docs/make_validation.py
+# The quick pages, made again elsewhere and compared.
+pages: .venv/.installed-plugins
+	$(BIN)/python docs/make_validation.py --check
 
-stale: .venv/.installed
+# The validation tests and all pages that the present sources have not made; goes on where it was stopped. Some pages
+# need DOLFINx.
+validate: .venv/.installed-plugins .venv/.installed-bench
+	tools/dolfinx make
+	$(BIN)/python docs/make_validation.py --present
+
+# The validation tests alone, and docs/validation/tests.md.
+nightly: .venv/.installed-plugins
+	$(BIN)/python docs/make_validation.py --present tests
+
+stale: .venv/.installed-plugins
 	$(BIN)/python docs/make_validation.py --stale
 
 lint: .venv/.installed-dev
@@ -47,9 +56,7 @@ lint: .venv/.installed-dev
 	$(BIN)/mypy
 
 bench: .venv/.installed-bench .venv/.installed-plugins
-	$(BIN)/python benchmarks/step.py --page docs/validation/step.md
-	$(BIN)/python benchmarks/backends.py --page docs/validation/backends.md
-	$(BIN)/python benchmarks/work_precision.py --page docs/validation/work_precision.md
+	$(BIN)/python docs/make_validation.py step work_precision contact_step
 	$(BIN)/python benchmarks/dry_spheres.py
 
 clean:

@@ -22,7 +22,7 @@ def write_page(path: Path, text: str) -> None:
     from rigidfluid.core.run.summary import versions
 
     record = Record(str(datetime.date.today()), commit(), round(cpu_seconds(), 1), versions(), (source_digest(),))
-    told = f"{record.cpu_seconds:.0f} s of CPU time, [versions](records/{path.stem}.json)"
-    path.write_text(f"{text.rstrip()}\n\nWritten at commit {record.commit}; {told}.\n", encoding="utf-8")
+    told = f"Written: {record.making}; [versions](records/{path.stem}.json)."
+    path.write_text(f"{text.rstrip()}\n\n{told}\n", encoding="utf-8")
     record.files.update({file.name: file_digest(file) for file in (path, path.with_suffix(".png")) if file.exists()})
     record.write(path.stem, path.parent / "records")

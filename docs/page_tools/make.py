@@ -6,9 +6,11 @@ import os
 import shlex
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 from page_tools.places import PAGES, ROOT, generators
+from page_tools.provenance import COMMIT, commit
 
 PATHS = (ROOT / "src", ROOT / "docs", ROOT / "tests" / "support")
 THREADS = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
@@ -23,6 +25,10 @@ MEASURED = {
 """Pages that tell times, by what measures and writes them."""
 
 
+WITH_DOLFINX = ("backends", "backends_study", "parallel", "settling_sphere", "ten_cate")
+"""Pages that need DOLFINx."""
+
+
 def pages() -> list[str]:
     """Names of all pages."""
     return sorted([*generators(), *MEASURED])
@@ -35,7 +41,15 @@ def make(name: str, *, fresh: bool = False, present: bool = False, folder: Path 
     else:
         words = ["-m", "page_tools", name, *["--fresh"] * fresh, *["--present"] * present]
         words += ["--to", str(folder)] if folder else []
-    print(shlex.join(["python", *words]), flush=True)
+    command = [*_python(name), *words]
+    print(shlex.join(command), flush=True)
     path = os.pathsep.join([*map(str, PATHS), *filter(None, [os.environ.get("PYTHONPATH")])])
-    environment = dict.fromkeys(THREADS, "1") | os.environ | {"PYTHONPATH": path}
-    return not subprocess.run([sys.executable, *words], cwd=ROOT, env=environment, check=False).returncode
+    environment = dict.fromkeys(THREADS, "1") | os.environ | {"PYTHONPATH": path, COMMIT: commit()}
+    return not subprocess.run(command, cwd=ROOT, env=environment, check=False).returncode
+
+
+def _python(name: str) -> list[str]:
+    """This Python; or that of the folder with DOLFINx, of a page that needs it where there is none."""
+    if name in WITH_DOLFINX and find_spec("dolfinx") is None:
+        return ["tools/dolfinx", "run", "python3"]
+    return [sys.executable]

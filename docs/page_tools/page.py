@@ -58,7 +58,8 @@ def write(page: Page, name: str, work: Work, folder: Path = PAGES) -> None:
         made=str(datetime.date.today()), commit=commit(), cpu_seconds=round(work.cpu_seconds, 1), versions=versions(),
         sources=work.sources, texts=texts(), runs=work.runs,
     )  # fmt: skip
-    parts = [f"# {page.title}", " ".join([_told(record, command, name), *_about_older(work.outdated)])]
+    by = f"by `{command}`, rigidfluid {rigidfluid.__version__}; [runs and versions]({RECORDS.name}/{name}.json)."
+    parts = [f"# {page.title}", " ".join([f"M{record.making[1:]}, {by}", *_about_older(work.outdated)])]
     for suffix, figure in page.figures.items():
         picture = folder / f"{name}{suffix}.png"
         if not suffix:
@@ -74,13 +75,6 @@ def write(page: Page, name: str, work: Work, folder: Path = PAGES) -> None:
 def pictures(page: Page, name: str, folder: Path) -> list[Path]:
     """Files of the figures of a page."""
     return [folder / f"{name}{suffix}.png" for suffix in page.figures]
-
-
-def _told(record: Record, command: str, name: str) -> str:
-    return (
-        f"Made on {record.made} at commit {record.commit} by `{command}`, rigidfluid {rigidfluid.__version__}, in "
-        f"{record.cpu_seconds:.0f} s of CPU time; [runs and versions]({RECORDS.name}/{name}.json)."
-    )
 
 
 def _about_older(outdated: Mapping[str, str]) -> Iterable[str]:

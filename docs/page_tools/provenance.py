@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import hashlib
+import os
 import subprocess
 import sys
 from collections.abc import Iterable
@@ -17,9 +18,15 @@ COMPUTING = ("src", "plugins", "scenes", "studies", "tests/support", "benchmarks
 """Where changes that are not committed count."""
 
 
+COMMIT = "RIGIDFLUID_COMMIT"
+"""Tells the commit to processes that have no git."""
+
+
 @cache
 def commit() -> str:
     """The commit of this working copy, with ``+`` where what computes has changes that are not in it."""
+    if told := os.environ.get(COMMIT):
+        return told
     head = _git("rev-parse", "--short=8", "HEAD")
     return head + "+" * bool(_git("status", "--porcelain", "--untracked-files=no", "--", *COMPUTING))
 

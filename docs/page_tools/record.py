@@ -31,12 +31,12 @@ class Record:
 
     ``sources`` are digests of what has made its runs, ``texts`` those of what its generators say, by path, and
     ``files`` those of the page and its figures; ``cpu_seconds`` is of the page and all runs, also of those that have
-    no entry in ``runs``, as they are made by the page itself or by a study.
+    no entry in ``runs``, as they are made by the page itself or by a study; None of pages older than their records.
     """
 
     made: str
     commit: str
-    cpu_seconds: float
+    cpu_seconds: float | None
     versions: dict[str, str] = field(default_factory=dict)
     sources: tuple[str, ...] = ()
     texts: dict[str, str] = field(default_factory=dict)
@@ -57,6 +57,12 @@ class Record:
         return [path for path, known in self.texts.items() if text_digest(ROOT / path) != known]
 
     @property
+    def making(self) -> str:
+        """By what it was made, and for how much CPU time."""
+        cost = "in an unknown time" if self.cpu_seconds is None else f"in {self.cpu_seconds:.0f} s of CPU time"
+        return f"made on {self.made} at {self.commit}, {cost}"
+
+    @property
     def is_present(self) -> bool:
         """Whether it was made by what is here: the same sources alone, the same words, the same files."""
         return list(self.sources) == [source_digest()] and not self.reworded() and not self.edited()
@@ -74,8 +80,9 @@ def read_record(name: str, folder: Path = RECORDS) -> Record | None:
     if not path.exists():
         return None
     told = json.loads(path.read_text(encoding="utf-8"))
-    runs = told.pop("runs", {})
-    return Record(
-        **told,
-        runs={label: RunRecord(**run | {"settings": Settings(**run["settings"])}) for label, run in runs.items()},
-    )
+    runs = {label: _run(run) for label, run in told.pop("runs").items()}
+    return Record(**told, runs=runs)
+
+
+def _run(told: dict[str, Any]) -> RunRecord:
+    return RunRecord(**told | {"settings": Settings(**told["settings"])})

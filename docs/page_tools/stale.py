@@ -1,4 +1,4 @@
-"""Which pages no longer follow from what is here: edited by hand, said otherwise by their module, or of other results."""
+"""Which pages no longer follow from what is here: edited, said otherwise by their module, or of other results."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def stale(names: list[str], again: Again, pages: Path = PAGES, records: Path = R
         if list(record.sources) != [source_digest()]:
             found += _other_results(record, again)
         if found:
-            yield name, f"made at {record.commit}, in {record.cpu_seconds:.0f} s: {'; '.join(found)}"
+            yield name, f"{record.making}: {'; '.join(found)}"
 
 
 def unseen(names: list[str], records: Path = RECORDS) -> Iterator[tuple[str, str]]:
@@ -38,7 +38,7 @@ def unseen(names: list[str], records: Path = RECORDS) -> Iterator[tuple[str, str
     for name in names:
         record = read_record(name, records)
         if record is not None and not record.runs and list(record.sources) != [source_digest()]:
-            yield name, f"made at {record.commit}, in {record.cpu_seconds:.0f} s"
+            yield name, record.making
 
 
 def steps_again(run: RunRecord) -> Steps:

@@ -103,8 +103,9 @@ Aimed at are at most 3 % created, and 1 % with steps of 1 ms and less, and at mo
 A step in which an impact would lose much is shortened, to an eighth at most. In the squeezed channel both walls push
 the disk all the time.
 
-At most {created:.2f} % are created; over {rows} rows {created_mean:.3f} % are created in the mean, and {lost_mean:.2f} %
-lost. What is lost depends on the start: from seven, the second disk moved by .006 cm from each to the next, it is
+At most {created:.2f} % are created; over {rows} rows {created_mean:.3f} % are created in the mean, and
+{lost_mean:.2f} % lost. What is lost depends on the start: from seven, the second disk moved by .006 cm from each to the
+next, it is
 
 {starts}
 
