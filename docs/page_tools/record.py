@@ -65,7 +65,7 @@ class Record:
     @property
     def is_present(self) -> bool:
         """Whether it was made by what is here: the same sources alone, the same words, the same files."""
-        return list(self.sources) == [source_digest()] and not self.reworded() and not self.edited()
+        return self.sources == (source_digest(),) and not self.reworded() and not self.edited()
 
 
 def _by_lines(told: dict[str, Any]) -> str:
@@ -81,8 +81,8 @@ def read_record(name: str, folder: Path = RECORDS) -> Record | None:
         return None
     told = json.loads(path.read_text(encoding="utf-8"))
     runs = {label: _run(run) for label, run in told.pop("runs").items()}
-    return Record(**told, runs=runs)
+    return Record(**told | {"runs": runs, "sources": tuple(told["sources"])})
 
 
 def _run(told: dict[str, Any]) -> RunRecord:
-    return RunRecord(**told | {"settings": Settings(**told["settings"])})
+    return RunRecord(**told | {"settings": Settings(**told["settings"]), "commits": tuple(told["commits"])})

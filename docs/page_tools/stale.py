@@ -27,7 +27,7 @@ def stale(names: list[str], again: Again, pages: Path = PAGES, records: Path = R
             continue
         found = [f"{file} is not as it was written" for file in record.edited(pages)]
         found += [f"{path} says something else" for path in record.reworded()]
-        if list(record.sources) != [source_digest()]:
+        if record.sources != (source_digest(),):
             found += _other_results(record, again)
         if found:
             yield name, f"{record.making}: {'; '.join(found)}"
@@ -37,7 +37,7 @@ def unseen(names: list[str], records: Path = RECORDS) -> Iterator[tuple[str, str
     """Pages of whose results it cannot be said, since other sources have made them and no run of theirs is recorded."""
     for name in names:
         record = read_record(name, records)
-        if record is not None and not record.runs and list(record.sources) != [source_digest()]:
+        if record is not None and not record.runs and record.sources != (source_digest(),):
             yield name, record.making
 
 
