@@ -33,7 +33,7 @@ class Page:
         Markdown.
     figures : mapping
         Figures, or pictures that were made elsewhere, by what is put to the page's name: ``""`` is NAME.png, on top of
-        the page, and ``"_heights"`` is NAME_heights.png, which the text must show.
+        the page, and ``"_heights"`` is NAME_heights.png, ``".gif"`` NAME.gif, which the text must show.
     command : str
         What it is made by, where that is not ``python docs/make_validation.py NAME``.
     """
@@ -61,20 +61,20 @@ def write(page: Page, name: str, work: Work, folder: Path = PAGES) -> None:
     by = f"by `{command}`, rigidfluid {rigidfluid.__version__}; [runs and versions]({RECORDS.name}/{name}.json)."
     parts = [f"# {page.title}", " ".join([f"M{record.making[1:]}, {by}", *_about_older(work.outdated)])]
     for suffix, figure in page.figures.items():
-        picture = folder / f"{name}{suffix}.png"
+        picture = folder / picture_name(name, suffix)
         if not suffix:
             parts.append(f"![{page.title}]({picture.name})")
         elif f"]({picture.name})" not in page.text:
             raise ValueError(f"the text of {name} does not show {picture.name}")
         _save(figure, picture)
     (folder / f"{name}.md").write_text("\n\n".join([*parts, page.text.strip()]) + "\n", encoding="utf-8")
-    files = {path.name: file_digest(path) for path in [folder / f"{name}.md", *pictures(page, name, folder)]}
-    replace(record, files=files).write(name, folder / RECORDS.name)
+    names = [f"{name}.md", *(picture_name(name, suffix) for suffix in page.figures)]
+    replace(record, files={file: file_digest(folder / file) for file in names}).write(name, folder / RECORDS.name)
 
 
-def pictures(page: Page, name: str, folder: Path) -> list[Path]:
-    """Files of the figures of a page."""
-    return [folder / f"{name}{suffix}.png" for suffix in page.figures]
+def picture_name(name: str, suffix: str) -> str:
+    """Name of the file of a figure."""
+    return f"{name}{suffix}" if "." in suffix else f"{name}{suffix}.png"
 
 
 def _about_older(outdated: Mapping[str, str]) -> Iterable[str]:

@@ -76,6 +76,12 @@ class Fall:
         """Of the highest speed from the measured one, relative."""
         return float(self.speed.max() / SETTLING_SPEED - 1.0)
 
+    @property
+    def stokes(self) -> float:
+        """Stokes number of the highest speed, by the sphere's density."""
+        body, fluid = self.run.scene.body[0], self.run.scene.fluid
+        return float(body.density * 2.0 * self.radius * self.speed.max() / (9.0 * fluid.viscosity))
+
     def resistance(self, gap: float) -> tuple[float, float, float]:
         """At a gap over the radius: the speed, the force of the fluid over 6πμrV, and the same less added mass and
         history."""
@@ -117,6 +123,7 @@ def page(work: Work) -> Page:
         slow=", and ".join(slow(work, size) for size in SLOW),
         approach=table(("gap over radius", "Brenner", *headings.values()), _approach(falls)),
         within=_within(falls["shipped"]),
+        stokes=falls["shipped"].stokes,
     )
     command = "tools/dolfinx run python3 docs/make_validation.py ten_cate"
     return Page("A sphere settles in silicone oil", text, {"": speeds(falls, headings)}, command)
@@ -229,7 +236,8 @@ it. Further out the flow has a Reynolds number of ten, and Brenner's law does no
 
 ## Touch-down
 
-Balls in liquids do not come back below Stokes numbers of about ten; here it is 1.5 with the solid's density alone. What
+Balls in liquids do not come back below Stokes numbers of about ten; here it is {stokes:.1f} with the solid's density
+alone. What
 stops the sphere is the film, and the mesh has it: a gap always has two cells across, which give Poiseuille's profile
 exactly. The law's range of .015 cm is below the gap at which the film has taken the sphere's speed, so that it has
 next to nothing to give back; it carries the sphere's weight at rest. A sub-grid film (`lubrication`) is not needed
