@@ -10,8 +10,8 @@ from rigidfluid.core.output.history import History
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene
 
-KEPT = (1, 2, 4, 8, 16, 32)
-"""Steps of which numbers are kept."""
+KEPT, STEPS = (1, 2, 4, 8, 16, 32), 4
+"""Steps of which numbers are kept, and up to which they are made again."""
 
 ROUND_OFF = 1e-8
 """Difference, over the largest of a quantity, that is another machine's rounding and no other result."""

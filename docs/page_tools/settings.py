@@ -57,7 +57,12 @@ def _overrides(base: Any, wanted: Any, key: str = "") -> Iterator[str]:
         for name, value in after.items():
             yield from _overrides(before.get(name), value, f"{key}.{name}" if key else str(name))
     elif wanted is not None:
-        yield f"{key}={_toml(wanted)}"
+        yield override(key, wanted)
+
+
+def override(key: str, value: Any) -> str:
+    """What ``--set`` takes to set a value of any kind."""
+    return f"{key}={_toml(value)}"
 
 
 def _can(base: Any, wanted: Any) -> bool:

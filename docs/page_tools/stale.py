@@ -6,14 +6,14 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from page_tools.cpu_time import cpu_seconds
-from page_tools.first_steps import ROUND_OFF, Steps, difference, first_steps
+from page_tools.first_steps import ROUND_OFF, STEPS, Steps, difference, first_steps
 from page_tools.places import PAGES, RECORDS
 from page_tools.provenance import source_digest
 from page_tools.record import Record, RunRecord, read_record
-from rigidfluid.errors import RigidfluidError
+from rigidfluid.errors import PluginError, RigidfluidError
 
-STEPS, SECONDS = 4, 15.0
-"""So many steps are made again of runs of a page, the cheapest first, until they have taken so much CPU time."""
+SECONDS = 15.0
+"""The first steps of a page's runs are made again, the cheapest first, until they have taken so much CPU time."""
 
 Again = Callable[[RunRecord], Steps]
 
@@ -53,6 +53,8 @@ def _other_results(record: Record, again: Again) -> Iterator[str]:
             return
         try:
             off = difference(run.steps, again(run))
+        except PluginError:
+            continue  # of a part that is not installed here nothing can be said
         except RigidfluidError as error:
             yield f"{label} does not run: {error}"
             continue

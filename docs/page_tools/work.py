@@ -7,14 +7,14 @@ from pathlib import Path
 
 import rigidfluid
 from page_tools.cpu_time import cpu_seconds
-from page_tools.first_steps import steps_of
+from page_tools.first_steps import STEPS, first_steps, steps_of
 from page_tools.kept_run import Run, keep_run
 from page_tools.kept_tests import Found, kept_tests
 from page_tools.made import Made
-from page_tools.places import RUNS, SCENES, STUDIES
-from page_tools.provenance import source_digest
+from page_tools.places import ROOT, RUNS, SCENES, STUDIES
+from page_tools.provenance import commit, source_digest
 from page_tools.record import RunRecord
-from page_tools.settings import settings_of
+from page_tools.settings import Settings, override, settings_of
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.post.progress import RunsProgress
 from rigidfluid.post.studies import load_study, run_study
@@ -66,6 +66,13 @@ class Work:
         )
         return run
 
+    def watch(self, label: str, settings: Settings) -> None:
+        """Record the first steps of a scene that is run elsewhere, as by a study, so that others are seen later."""
+        start = cpu_seconds()
+        steps = first_steps(settings.scene, STEPS)
+        spent = round(cpu_seconds() - start, 1)
+        self.runs[label] = RunRecord(settings.command, settings, (commit(),), spent, steps)
+
     def scene(self, name: str, overrides: Iterable[str] = ()) -> Scene:
         """A scene of scenes/."""
         return rigidfluid.load_scene(SCENES / name, overrides)
@@ -83,6 +90,9 @@ class Work:
 
         results, _ = run_study(study, folder, fresh=not kept, progress=observe)
         self._note(f"study {name}", folder, Made.read(folder).cpu_seconds, start)
+        if study.scene is not None:
+            overrides = [override(key, value) for key, value in (study.tables.set | results.plan[0]).items()]
+            self.watch(f"study {name}", Settings(str(study.scene.resolve().relative_to(ROOT)), overrides))
         return results
 
     def tests(self, path: Path) -> Found:

@@ -224,6 +224,9 @@ reference = "finest"
     assert again.study("bounce").rows == results.rows
     assert again.outdated == {}
     assert Made.read(tmp_path / "page" / "study_bounce").cpu_seconds > 0.0
+    watched = again.runs["study bounce"]
+    assert watched.command == "rigidfluid run scenes/dry_bounce.toml --set time.end=0.004 --set time.step=0.0005"
+    assert list(watched.steps) == ["1", "2", "4"]
 
 
 def test_names_change_nothing_that_a_module_says(tmp_path: Path) -> None:

@@ -79,6 +79,12 @@ def test_a_scene_that_is_refused_now_makes_a_page_stale(tmp_path: Path, made: Re
     assert "run does not run: " in told(tmp_path, record, steps_again)["two"]
 
 
+def test_a_run_by_a_part_that_is_not_here_tells_nothing(tmp_path: Path, made: Record) -> None:
+    run = made.runs["run"]
+    other = replace(run, settings=replace(run.settings, overrides=["fluid.backend=nowhere"]))
+    assert told(tmp_path, replace(made, sources=("others",), runs={"run": other}), steps_again) == {}
+
+
 def test_a_page_of_other_sources_without_runs_is_told_apart(tmp_path: Path, made: Record) -> None:
     old = replace(made, runs={}, sources=(), commit="1234567", cpu_seconds=None)
     assert told(tmp_path, old) == {}
