@@ -18,7 +18,7 @@ import sys
 
 from page_tools.check import check
 from page_tools.make import make, pages
-from page_tools.quick import QUICK
+from page_tools.quick import quick
 from page_tools.record import read_record
 from page_tools.stale import stale, steps_again, unseen
 
@@ -69,7 +69,7 @@ def main() -> int:
     if unknown := set(given.names) - set(pages()):
         parser.error(f"no page {', '.join(sorted(unknown))}; there are {', '.join(pages())}")
     if given.check:
-        return check_all(given.names or list(QUICK))
+        return check_all(given.names or quick())
     if given.stale:
         return tell_stale(given.names or pages())
     return make_all(given.names or pages(), given.fresh, given.present)
