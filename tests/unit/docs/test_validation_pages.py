@@ -128,3 +128,29 @@ def test_a_mark_without_a_figure_is_refused() -> None:
 
 def test_a_figure_without_a_mark_is_seen() -> None:
     assert unmarked(".5<!-- a: b → c -->, .7 s") == [".7"]
+
+
+NEAR = 0.02
+"""Largest distance of a measured figure of the README from its reference, relative."""
+
+
+def far_from_reference(row: str) -> list[tuple[float, float]]:
+    """Figures of a row that are not near the reference beside them: the first one, or one each; a 0 tells nothing."""
+    *_, figures, reference, _, _ = row.split("|")
+    told = [float(number) for number in re.findall(r"(?<![\w.])\d*\.?\d+(?![\w.])", re.sub(r"\(.*?\)", "", reference))]
+    found = [quote.value for quote in quotes(figures)]
+    pairs = zip(found, told if len(told) == len(found) else told[:1], strict=False)
+    return [(one, other) for one, other in pairs if other and abs(one / other - 1.0) > NEAR]
+
+
+def test_the_readme_s_figures_are_near_their_references() -> None:
+    table = README.partition("| case | figure | measured |")[2].partition("\n\n")[0]
+    assert [far for row in table.splitlines()[2:] for far in far_from_reference(row)] == []
+
+
+def test_a_figure_far_from_its_reference_is_seen() -> None:
+    row = "| a | lift | .4809<!-- a: b → c -->, .9<!-- a: d → c --> s | {} | `tests/a.py` |"
+    assert far_from_reference(row.format(".4779, .91 (John 2004)")) == []
+    assert far_from_reference(row.format(".4379, .91")) == [(0.4809, 0.4379)]
+    assert far_from_reference(row.format(".4779; .8; .7 (others)")) == []
+    assert far_from_reference(row.format("0")) == []
