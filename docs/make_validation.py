@@ -3,12 +3,12 @@
 python docs/make_validation.py [NAME ...] [--fresh]     makes these pages, or all; --fresh runs anew what is kept
 python docs/make_validation.py --present [NAME ...]     the same, but for pages that the present sources have made; runs
                                                         of other sources are made anew; what was stopped goes on
-python docs/make_validation.py --check [NAME ...]       makes quick pages anew in out/pages, two at a time, and names
-                                                        those that say something else than docs/validation
+python docs/make_validation.py --check [NAME ...]       makes quick pages anew in out/pages, and names those that
+                                                        say something else than docs/validation
 python docs/make_validation.py --stale [NAME ...]       names those that are edited, or whose first steps are others now
 
-A page is made by docs/pages/NAME.py, or measured by benchmarks/NAME.py, in a process and with one thread of its own. A
-run that was stopped goes on. Pages that fail are named at the end, and stay as they were.
+A page is made by docs/pages/NAME.py, or measured by benchmarks/NAME.py, in a process and with one thread of its own,
+two at a time. A run that was stopped goes on. Pages that fail are named at the end, and stay as they were.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ import argparse
 import sys
 
 from page_tools.check import check
-from page_tools.make import make, pages
+from page_tools.make import make_several, pages
 from page_tools.quick import quick
 from page_tools.record import read_record
 from page_tools.stale import stale, steps_again, unseen
 
 
 def make_all(names: list[str], fresh: bool, present: bool) -> int:
-    """Make pages, one after the other; 1 where some could not be made."""
+    """Make pages; 1 where some could not be made."""
     wanted = [name for name in names if not (present and _is_present(name))]
-    failed = [name for name in wanted if not make(name, fresh=fresh, present=present)]
+    failed = [name for name, well in make_several(wanted, fresh=fresh, present=present).items() if not well]
     if failed:
         print(f"could not be made: {', '.join(failed)}")
     return int(bool(failed))

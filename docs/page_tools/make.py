@@ -6,12 +6,16 @@ import os
 import shlex
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 from page_tools.places import PAGES, ROOT, generators
 from page_tools.provenance import COMMIT, commit
 
+CORES = 2
 PATHS = (ROOT / "src", ROOT / "docs", ROOT / "tests" / "support")
 THREADS = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
 MEASURED = {
@@ -46,6 +50,20 @@ def make(name: str, *, fresh: bool = False, present: bool = False, folder: Path 
     path = os.pathsep.join([*map(str, PATHS), *filter(None, [os.environ.get("PYTHONPATH")])])
     environment = dict.fromkeys(THREADS, "1") | os.environ | {"PYTHONPATH": path, COMMIT: commit()}
     return not subprocess.run(command, cwd=ROOT, env=environment, check=False).returncode
+
+
+def make_several(names: list[str], **how: Any) -> dict[str, bool]:
+    """Make pages, two at a time, and those that tell times after them, alone; whether each could be made.
+
+    Where this is interrupted no other page is begun.
+    """
+    shared, alone = ([name for name in names if (name in MEASURED) == timed] for timed in (False, True))
+    pool = ThreadPoolExecutor(CORES)
+    try:
+        made = dict(zip(shared, pool.map(partial(make, **how), shared), strict=True))
+    finally:
+        pool.shutdown(cancel_futures=True)
+    return made | {name: make(name, **how) for name in alone}
 
 
 def _python(name: str) -> list[str]:

@@ -10,7 +10,7 @@ import make_validation
 import page_tools.__main__ as one_page
 import pytest
 from page_tools import Page, Work
-from page_tools.make import make
+from page_tools.make import MEASURED, make, make_several, pages
 from paths import ROOT
 
 
@@ -28,29 +28,43 @@ def test_a_page_that_fails_is_named_and_the_others_are_made(
         asked.append((name, fresh, present))
         return name != "window"
 
-    monkeypatch.setattr(make_validation, "make", make)
+    monkeypatch.setattr("page_tools.make.make", make)
     assert command(monkeypatch, "window", "walls", "--fresh") == 1
-    assert asked == [("window", True, False), ("walls", True, False)]
+    assert sorted(asked) == [("walls", True, False), ("window", True, False)]
     assert capsys.readouterr().out == "could not be made: window\n"
     assert command(monkeypatch, "walls") == 0
 
 
 def test_all_pages_are_made_where_none_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[str] = []
-    monkeypatch.setattr(make_validation, "make", lambda name, **_: not asked.append(name))
+    monkeypatch.setattr("page_tools.make.make", lambda name, **_: not asked.append(name))
     assert command(monkeypatch) == 0
-    assert asked == sorted(asked)
+    assert sorted(asked) == pages()
     assert {"falling_disk", "walls", "tests", "step"} <= set(asked)
+    assert set(asked[-len(MEASURED) :]) == set(MEASURED)  # at last, alone
 
 
 def test_pages_that_the_present_sources_have_made_are_left(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[str] = []
-    monkeypatch.setattr(make_validation, "make", lambda name, **_: not asked.append(name))
+    monkeypatch.setattr("page_tools.make.make", lambda name, **_: not asked.append(name))
     present = SimpleNamespace(is_present=True), SimpleNamespace(is_present=False), None
     known = dict(zip(("walls", "window", "wakes"), present, strict=True))
     monkeypatch.setattr(make_validation, "read_record", known.__getitem__)
     assert command(monkeypatch, "--present", *known) == 0
-    assert asked == ["window", "wakes"]
+    assert sorted(asked) == ["wakes", "window"]
+
+
+def test_after_an_interrupt_no_page_is_begun(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[str] = []
+
+    def interrupted(name: str) -> bool:
+        asked.append(name)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("page_tools.make.make", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        make_several([str(number) for number in range(100)])
+    assert len(asked) < 50
 
 
 @pytest.mark.parametrize(

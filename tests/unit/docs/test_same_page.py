@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from page_tools import check as check_module
 from page_tools.check import check
 from page_tools.same_page import differences
 
@@ -65,7 +64,7 @@ def test_quick_pages_are_made_elsewhere_and_compared(tmp_path: Path, monkeypatch
         assert fresh
         return name != "failed"
 
-    monkeypatch.setattr(check_module, "make", make)
+    monkeypatch.setattr("page_tools.make.make", make)
     found = dict(check(["same", "other", "failed"], folder, pages))
     assert found["same"] == []
     assert len(found["other"]) == 1
