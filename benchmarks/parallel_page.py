@@ -184,7 +184,7 @@ def main() -> None:
     if not arguments.kept:
         kept["steps"] = measured()
         STORE.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
-    write_page(arguments.page, page(kept))
+    write_page(arguments.page, page(kept), kept=arguments.kept)
 
 
 if __name__ == "__main__":

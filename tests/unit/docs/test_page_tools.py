@@ -252,6 +252,21 @@ def test_a_page_that_a_benchmark_writes_has_a_record(tmp_path: Path, monkeypatch
     assert record.commit == commit()
     assert record.edited(tmp_path / "validation") == []
     assert record.making in (tmp_path / "validation" / "speed.md").read_text()
+    replace(record, made="before", commit="1").write("speed", tmp_path / "validation" / "records")
+    with benchmark("written_page") as script:
+        monkeypatch.setattr(script, "DOCS", tmp_path)
+        script.write_page(tmp_path / "validation" / "speed.md", "Other text.", kept=True)
+    record = read_record("speed", tmp_path / "validation" / "records")
+    assert record is not None
+    assert (record.made, record.commit) == ("before", "1")
+    assert record.edited(tmp_path / "validation") == []
+
+
+def test_what_a_benchmark_measures_is_kept_beside_its_page(tmp_path: Path) -> None:
+    with benchmark("written_page") as script:
+        found = script.measurement(tmp_path / "speed.md", [{"seconds": 1.5}])
+        assert found["rows"] == [{"seconds": 1.5}]
+        assert script.measurement(tmp_path / "speed.md") == found
 
 
 def shown(text: str = "Text.") -> Page:

@@ -8,6 +8,7 @@ from inspect import signature
 from pathlib import Path
 
 import pytest
+from benchmark_scripts import benchmark
 from page_tools.make import MEASURED, WITH_DOLFINX, pages
 from page_tools.places import PAGES, RECORDS, ROOT, generators
 from page_tools.quick import SECONDS, quick
@@ -73,6 +74,14 @@ def test_a_page_is_as_it_was_written(name: str) -> None:
     record = read_record(name)
     assert record is not None, f"docs/validation/{name}.md has no record"
     assert record.edited() == [], "a page is made, not edited: python docs/make_validation.py NAME"
+
+
+@pytest.mark.parametrize("name", sorted(path.stem for path in (PAGES / "measured").iterdir()))
+def test_a_page_that_tells_times_follows_from_what_is_kept(name: str) -> None:
+    with benchmark("written_page") as written, benchmark(name) as script:
+        found = written.measurement(PAGES / f"{name}.md")
+        text = script.page(found, f"{name}.png") if name == "work_precision" else script.page(found)
+    assert (PAGES / f"{name}.md").read_text(encoding="utf-8").startswith(text.rstrip())
 
 
 def test_every_record_is_of_a_page() -> None:
