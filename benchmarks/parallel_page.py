@@ -52,7 +52,7 @@ def step_rows(rows: Sequence[Row], dimension: int) -> Iterator[Sequence[str]]:
             )  # fmt: skip
 
 
-def of_steps(rows: Sequence[Row]) -> dict[str, str]:
+def figures_of_steps(rows: Sequence[Row]) -> dict[str, str]:
     """What the text says of them."""
     told = {}
     for dimension in (2, 3):
@@ -87,7 +87,7 @@ def page(kept: dict[str, Any]) -> str:
         how=steps["how"],
         disks=table(("disks", *STEP_HEAD), step_rows(steps["rows"], 2)),
         balls=table(("balls", *STEP_HEAD), step_rows(steps["rows"], 3)),
-        **of_steps(steps["rows"]),
+        **figures_of_steps(steps["rows"]),
         detections=kept["detections"],
         detected=table(
             ("", "one process [ms]", "each of two [ms]", "calls", "bytes sent"),

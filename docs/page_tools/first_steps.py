@@ -23,14 +23,14 @@ Steps = dict[str, dict[str, float]]
 
 
 def steps_of(history: History) -> Steps:
-    """Those of `KEPT` that a run has made, to 12 digits."""
+    """Numbers after those steps of `KEPT` that a run has made, to 12 digits."""
     bodies = history.bodies
     times = np.unique(bodies["time"])
-    return {str(number): _at(bodies, times[number]) for number in KEPT if number < len(times)}
+    return {str(number): _means(bodies, times[number]) for number in KEPT if number < len(times)}
 
 
 def first_steps(scene: Scene, last: int) -> Steps:
-    """The same of a scene that is run here, until the step ``last``."""
+    """Run a scene until the step ``last``, and give the same numbers."""
     run = Simulation(scene)
     for _ in range(last):
         if run.ended:
@@ -56,7 +56,7 @@ def _apart(known: list[dict[str, float]], found: list[dict[str, float]], name: s
     return off / scale if scale > 0.0 else float("inf") * (off > 0.0)
 
 
-def _at(bodies: Mapping[str, np.ndarray], time: float) -> dict[str, float]:
+def _means(bodies: Mapping[str, np.ndarray], time: float) -> dict[str, float]:
     now = bodies["time"] == time
     found = {}
     for name, axes in QUANTITIES.items():

@@ -53,7 +53,7 @@ def kept_tests(path: Path, folder: Path, *, fresh: bool = False) -> Found:
 
 
 def _run(path: Path, told: Path) -> Found:
-    """By pytest in a process of its own, in the package that the file is of."""
+    """Run them by pytest in a process of its own, in the package that the file is of."""
     told.unlink(missing_ok=True)
     home = next(folder for folder in path.parents if (folder / "pyproject.toml").exists())
     words = ["-m", "pytest", "-q", "-m", "validation", f"--junitxml={told}", str(path)]

@@ -46,7 +46,7 @@ class Record:
     def write(self, name: str, folder: Path = RECORDS) -> None:
         """Write it beside the page, a run a line."""
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / f"{name}.json").write_text(_by_lines(asdict(self)), encoding="utf-8")
+        (folder / f"{name}.json").write_text(_json_lines(asdict(self)), encoding="utf-8")
 
     def edited(self, pages: Path = PAGES) -> list[str]:
         """Files of the page that are not what was written."""
@@ -68,7 +68,7 @@ class Record:
         return self.sources == (source_digest(),) and not self.reworded() and not self.edited()
 
 
-def _by_lines(told: dict[str, Any]) -> str:
+def _json_lines(told: dict[str, Any]) -> str:
     runs = ",\n".join(f"  {json.dumps(label)}: {json.dumps(run)}" for label, run in told["runs"].items())
     rest = (f" {json.dumps(key)}: {json.dumps(value)}" for key, value in told.items() if key != "runs")
     return "{\n" + ",\n".join([*rest, f' "runs": {{\n{runs}\n }}']) + "\n}\n"

@@ -51,7 +51,7 @@ def _overrides(base: Any, wanted: Any, key: str = "") -> Iterator[str]:
     """What ``--set`` must say to make the tables ``wanted`` of others; a table with a key too many is set whole."""
     if base == wanted:
         return
-    keyed = [dict(enumerate(one)) if isinstance(one, list) and _of_tables(one) else one for one in (base, wanted)]
+    keyed = [dict(enumerate(one)) if isinstance(one, list) and _are_tables(one) else one for one in (base, wanted)]
     before, after = keyed
     if isinstance(before, dict) and isinstance(after, dict) and before.keys() <= after.keys() and _can(base, wanted):
         for name, value in after.items():
@@ -61,7 +61,7 @@ def _overrides(base: Any, wanted: Any, key: str = "") -> Iterator[str]:
 
 
 def override(key: str, value: Any) -> str:
-    """What ``--set`` takes to set a value of any kind."""
+    """Assignment for ``--set`` of a value of any kind."""
     return f"{key}={_toml(value)}"
 
 
@@ -70,7 +70,7 @@ def _can(base: Any, wanted: Any) -> bool:
     return not isinstance(wanted, list) or len(base) == len(wanted)
 
 
-def _of_tables(entries: list[Any]) -> bool:
+def _are_tables(entries: list[Any]) -> bool:
     return bool(entries) and all(isinstance(entry, dict) for entry in entries)
 
 
