@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 from benchmark_scripts import benchmark
+from page_tools import Work
 from page_tools.make import MEASURED, WITH_DOLFINX, pages
-from page_tools.places import PAGES, RECORDS, ROOT, generators
+from page_tools.places import GENERATORS, PAGES, RECORDS, ROOT, generators
 from page_tools.quick import SECONDS, quick
 from page_tools.quotes import disagreements, quotes, unmarked
 from page_tools.record import Record, read_record
@@ -45,6 +46,13 @@ def test_every_page_says_what_makes_it(name: str) -> None:
 @pytest.mark.parametrize("name", generators())
 def test_every_generator_makes_a_page(name: str) -> None:
     assert list(signature(import_module(f"pages.{name}").page).parameters) == ["work"]
+
+
+@pytest.mark.parametrize("path", sorted(GENERATORS.glob("*.py")), ids=lambda path: path.stem)
+def test_a_generator_asks_its_work_for_what_there_is(path: Path) -> None:
+    """Also after hours of runs."""
+    asked = set(re.findall(r"\bwork\.(\w+)", path.read_text(encoding="utf-8")))
+    assert {name for name in asked if not hasattr(Work("page"), name)} == set()
 
 
 def test_every_generator_has_a_page() -> None:
