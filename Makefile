@@ -18,7 +18,7 @@ WITH_LOWEST := $(addprefix tests/unit/,test_cli.py test_registry.py core/case co
 	domains/test_cad.py domains/test_mesh_domain.py marching/test_marching.py taylor_hood/test_factorization.py post/reports) \
 	tests/contract/test_bodies.py tests/contract/test_force_laws.py
 
-.PHONY: run test test-lowest test-long test-plugins test-dolfinx install lint validate stale bench lock clean
+.PHONY: run test test-lowest test-long test-plugins test-dolfinx install lint pages validate nightly stale bench lock clean
 
 run: install
 	$(BIN)/rigidfluid run scenes/falling_disk.toml
@@ -44,12 +44,21 @@ test-dolfinx:
 	tools/dolfinx make
 	tools/dolfinx run python3 -m pytest -m 'not validation' $(WITH_DOLFINX)
 
-validate: .venv/.installed-plugins
-	$(BIN)/pytest -m validation
-	cd plugins/rigidfluid-lammps && $(CURDIR)/$(BIN)/python -m pytest -m validation
-	$(BIN)/python docs/make_validation.py
+# The quick pages, made again elsewhere and compared.
+pages: .venv/.installed-plugins
+	$(BIN)/python docs/make_validation.py --check
 
-stale: .venv/.installed
+# The validation tests and all pages that the present sources have not made; goes on where it was stopped. Some pages
+# need DOLFINx.
+validate: .venv/.installed-plugins .venv/.installed-bench
+	tools/dolfinx make
+	$(BIN)/python docs/make_validation.py --present
+
+# The validation tests alone, and docs/validation/tests.md.
+nightly: .venv/.installed-plugins
+	$(BIN)/python docs/make_validation.py --present tests
+
+stale: .venv/.installed-plugins
 	$(BIN)/python docs/make_validation.py --stale
 
 lint: .venv/.installed-dev
@@ -57,9 +66,7 @@ lint: .venv/.installed-dev
 	$(BIN)/mypy
 
 bench: .venv/.installed-bench .venv/.installed-plugins
-	$(BIN)/python benchmarks/step.py --page docs/validation/step.md
-	$(BIN)/python benchmarks/backends.py --page docs/validation/backends.md
-	$(BIN)/python benchmarks/work_precision.py --page docs/validation/work_precision.md
+	$(BIN)/python docs/make_validation.py step work_precision contact_step
 	$(BIN)/python benchmarks/dry_spheres.py
 
 # The versions that are installed here, for those who want the same; run the tests with them first.

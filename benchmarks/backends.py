@@ -23,7 +23,7 @@ import numpy as np
 from disk_under_way import MESHES, OUTPUT_EVERY, falling
 from processes import measured_apart
 from stages import STAGES, measured
-from written_page import write_page
+from written_page import measurement, write_page
 
 from rigidfluid.core.run.process import one_openblas_thread, peak_memory
 from rigidfluid.errors import RigidfluidError
@@ -139,9 +139,9 @@ time ~ unknownsᵏ, by least squares of the logarithms. Times of other days and 
 """
 
 
-def page(found: Mapping[str, Any], command: str) -> str:
+def page(found: Mapping[str, Any]) -> str:
     """The measurements as a Markdown page."""
-    parts = [PREAMBLE.format(**found, command=command, every=OUTPUT_EVERY)]
+    parts = [PREAMBLE.format(**found, every=OUTPUT_EVERY)]
     parts += [f"## {name}\n\n{table(rows)}\n" for name, rows in found["rows"].items()]
     if found["skipped"]:
         left_out = "\n".join(f"* {name}: {reason}" for name, reason in found["skipped"].items())
@@ -203,7 +203,11 @@ def main() -> None:
     parser.add_argument("--cores", type=int, nargs="+", default=list(CORES))
     parser.add_argument("--json", type=Path)
     parser.add_argument("--page", type=Path, help="write a Markdown page here, and a plot beside it")
+    parser.add_argument("--kept", action="store_true", help="write the page of what is kept, and measure nothing")
     arguments = parser.parse_args()
+    if arguments.kept:
+        write(arguments.page, measurement(arguments.page)["rows"], kept=True)
+        return
     cases = [Case(backend, cores) for backend in arguments.backends for cores in arguments.cores]
     found = collect(cases, arguments.sizes, arguments.steps)
     for name, reason in found["skipped"].items():
@@ -211,9 +215,14 @@ def main() -> None:
     if arguments.json:
         arguments.json.write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
     if arguments.page:
-        command = " ".join(["python benchmarks/backends.py", *sys.argv[1:]])
-        write_page(arguments.page, page(found, command))
-        plot(found, arguments.page.with_suffix(".png"))
+        found["command"] = " ".join(["python benchmarks/backends.py", *sys.argv[1:]])
+        write(arguments.page, measurement(arguments.page, found)["rows"])
+
+
+def write(file: Path, found: Mapping[str, Any], *, kept: bool = False) -> None:
+    """Write the page and its plot."""
+    plot(found, file.with_suffix(".png"))
+    write_page(file, page(found), kept=kept)
 
 
 if __name__ == "__main__":

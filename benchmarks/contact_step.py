@@ -6,7 +6,6 @@ python benchmarks/contact_step.py [--page docs/validation/contact_step.md]
 from __future__ import annotations
 
 import argparse
-import datetime
 import os
 import sys
 import time
@@ -22,7 +21,7 @@ sys.path.append(str(ROOT / "tests" / "support"))
 
 import fluid_contacts  # noqa: E402
 import numpy as np  # noqa: E402
-from written_page import write_page  # noqa: E402
+from written_page import measurement, write_page  # noqa: E402
 
 from rigidfluid.core.case.load import load_scene, scene_from_dict  # noqa: E402
 from rigidfluid.core.run.process import one_openblas_thread  # noqa: E402
@@ -126,14 +125,21 @@ def main() -> None:
     """Run all cases, print a line for each, and write the page."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--page", type=Path, help="where to write the table as well")
-    page, lines = parser.parse_args().page, [HEAD, ("---",) * len(HEAD)]
+    parser.add_argument("--kept", action="store_true", help="write the page of what is kept, and measure nothing")
+    arguments, measured = parser.parse_args(), []
     with one_openblas_thread():
-        for line in rows():
-            lines.append(line)
+        for line in () if arguments.kept else rows():
+            measured.append(line)
             print(*line, sep=" | ", flush=True)
+    if arguments.page is not None:
+        write_page(arguments.page, page(measurement(arguments.page, measured or None)), kept=arguments.kept)
+
+
+def page(found: dict[str, Any]) -> str:
+    """The rows as a Markdown page."""
+    lines = [HEAD, ("---",) * len(HEAD), *found["rows"]]
     table = "\n".join("| " + " | ".join(line) + " |" for line in lines)
-    if page is not None:
-        write_page(page, PAGE.format(date=datetime.date.today(), table=table))
+    return PAGE.format(date=found["date"], table=table)
 
 
 PAGE = """# Steps with contacts

@@ -13,13 +13,12 @@ bytes over (N/p)^⅔. Assumed: the network's latency α [s] and bandwidth β [by
 from __future__ import annotations
 
 import argparse
-import math
 import time
-from dataclasses import dataclass
 
 from mpi4py import MPI
 from petsc4py import PETSc
 from settling_sphere import MESHES, SCENE
+from step_model import Constants, model_lines
 
 from rigidfluid.core.case.load import load_scene
 from rigidfluid.core.run.process import one_openblas_thread
@@ -27,26 +26,6 @@ from rigidfluid.core.run.simulation import Simulation
 
 SUMS = ("VecDot", "VecTDot", "VecMDot", "VecNorm")
 EXCHANGES = ("VecScatterBegin", "SFBcastBegin", "SFReduceBegin")
-PROCESSES = (1, 2, 16, 64, 256, 1000)
-UNKNOWNS = (340_000, 3_000_000, 30_000_000)
-
-
-@dataclass(frozen=True)
-class Constants:
-    """Of a step: ``seconds`` a process and unknown, ``sums``, ``rounds`` of messages, ``bytes`` over (N/p)^⅔."""
-
-    seconds: float
-    sums: float
-    rounds: float
-    bytes: float
-
-    def step(self, unknowns: float, processes: int, latency: float, bandwidth: float) -> float:
-        """T(N, p) [s]."""
-        local = unknowns / processes
-        if processes == 1:
-            return self.seconds * local
-        waits = latency * (self.sums * math.log2(processes) + self.rounds)
-        return self.seconds * local + waits + self.bytes * local ** (2 / 3) / bandwidth
 
 
 def logged(names: tuple[str, ...], entry: str) -> float:
@@ -93,13 +72,7 @@ def main() -> None:
     print(f"{unknowns} unknowns on {MPI.COMM_WORLD.size} processes, a step:")
     print(f"  {1e6 * found.seconds:.2f} µs CPU an unknown, {found.sums:.0f} global sums, {found.rounds:.0f} exchanges,")
     print(f"  {found.bytes:.0f} bytes over (N/p)^(2/3)")
-    print("| unknowns | " + " | ".join(f"{count}" for count in PROCESSES) + " |")
-    print("|---" * (len(PROCESSES) + 1) + "|")
-    for size in UNKNOWNS:
-        network = arguments.latency, arguments.bandwidth
-        times = [found.step(size, count, *network) for count in PROCESSES]
-        cells = [f"{seconds:.3g} s, {times[0] / seconds:.0f}" for seconds in times]
-        print(f"| {size:,} | " + " | ".join(cells) + " |")
+    print(*model_lines(found, arguments.latency, arguments.bandwidth), sep="\n")
 
 
 if __name__ == "__main__":

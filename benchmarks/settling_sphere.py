@@ -190,7 +190,7 @@ def main() -> None:
                 if speaks:
                     print(line(row), flush=True)
                 if speaks and arguments.page:
-                    write_page(arguments.page, page(stored([row])), [SCENE])
+                    write_page(arguments.page, page(stored([row])))
 
 
 if __name__ == "__main__":

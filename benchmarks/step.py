@@ -10,9 +10,7 @@ the body, and solve, in the three ways of `ngsolve_step`.
 from __future__ import annotations
 
 import argparse
-import datetime
 import json
-import os
 import time
 from pathlib import Path
 from typing import Any
@@ -22,7 +20,7 @@ from disk_under_way import MESHES, falling
 from ngsolve_step import RENEWED_EVERY, WAYS, Frame, time_ngsolve
 from stages import measured
 from threadpoolctl import threadpool_limits
-from written_page import write_page
+from written_page import measurement, write_page
 
 from rigidfluid.core.run.simulation import Simulation
 
@@ -85,15 +83,15 @@ NGSolve takes its steps on the same meshes, with the body's motion given, in thr
 
 rigidfluid's step is implicit in the convection too, and includes moving the mesh, detection, the motion of the body and
 the energy balance. At 45,000 unknowns its aims are {imex} of `imex` and {reuse} of `reuse`; NGSolve has
-straight cells. Before factors outlived outputs, were of single precision and corrections were recycled (2026-11-21) its
-step took 128 ms there: iterate 44, factorise 33, assemble matrix 29, the rest 10, energies 7.5, assemble load 2.
+straight cells.
 """
 
 
-def page(rows: list[dict[str, Any]]) -> str:
-    """The rows as a Markdown page with its date, command and load."""
+def page(found: dict[str, Any]) -> str:
+    """The rows as a Markdown page with their date, command and load."""
+    rows = found["rows"]
     preamble = PREAMBLE.format(
-        date=datetime.date.today(), load=os.getloadavg()[1], cores=os.cpu_count(), renewed=RENEWED_EVERY, **AIMS
+        date=found["date"], load=found["load"], cores=found["cores"], renewed=RENEWED_EVERY, **AIMS
     )
     ways = " | ".join(f"{way} [ms] | ratio" for way in WAYS)
     lines = [
@@ -127,13 +125,14 @@ def main() -> None:
     parser.add_argument("--sizes", type=int, nargs="+", default=[15, 45, 150], choices=list(MESHES))
     parser.add_argument("--json", type=Path)
     parser.add_argument("--page", type=Path, help="write a Markdown page here")
+    parser.add_argument("--kept", action="store_true", help="write the page of what is kept, and measure nothing")
     arguments = parser.parse_args()
     rows = []
-    for thousands in arguments.sizes:
+    for thousands in [] if arguments.kept else arguments.sizes:
         rows.append(compare(thousands, arguments.steps))
         show(rows[-1])
     if arguments.page:
-        write_page(arguments.page, page(rows))
+        write_page(arguments.page, page(measurement(arguments.page, rows or None)), kept=arguments.kept)
     if arguments.json:
         arguments.json.write_text(json.dumps(rows, indent=2) + "\n", encoding="utf-8")
 

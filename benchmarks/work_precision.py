@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import argparse
 import csv
-import datetime
 import json
 import os
 import resource
@@ -18,14 +17,14 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 from scipy.interpolate import CubicHermiteSpline
-from written_page import write_page
+from written_page import measurement, write_page
 
 FOLDER = Path(__file__).parent
 SCENE = FOLDER.parent / "scenes" / "falling_disk.toml"
@@ -106,6 +105,11 @@ def stored() -> list[Row]:
     return [Row(one["name"], "stored", row["error"], row["seconds"]) for one in STORED["stored"] for row in one["rows"]]
 
 
+def all_rows(found: dict[str, Any]) -> list[Row]:
+    """Those that are measured together, and those from elsewhere."""
+    return [*(Row(**row) for row in found["rows"]), *stored()]
+
+
 def plot(rows: Sequence[Row], path: Path) -> None:
     """Error over seconds, both logarithmic."""
     figure = Figure(figsize=(7.0, 4.2), layout="constrained")
@@ -144,12 +148,13 @@ last. Seconds are CPU seconds of one thread for the whole command, start-up and 
 """
 
 
-def page(rows: Sequence[Row], picture: str) -> str:
+def page(found: dict[str, Any], picture: str) -> str:
     """The page with its date, command and load."""
+    rows = all_rows(found)
     return PAGE.format(
-        date=datetime.date.today(),
-        load=os.getloadavg()[1],
-        cores=os.cpu_count(),
+        date=found["date"],
+        load=found["load"],
+        cores=found["cores"],
         picture=picture,
         table="\n".join(f"| {row.program} | {row.settings} | {row.error:.1e} | {row.seconds:.1f} |" for row in rows),
         reference=STORED["reference"]["how"],
@@ -161,15 +166,17 @@ def main() -> None:
     """Measure, print, and write the page and its plot where asked."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--page", type=Path, help="write a Markdown page here, and its plot beside it")
+    parser.add_argument("--kept", action="store_true", help="write the page of what is kept, and measure nothing")
     arguments = parser.parse_args()
     rows = []
-    for row in measured():
-        rows.append(row)
+    for row in () if arguments.kept else measured():
+        rows.append(asdict(row))
         print(f"{row.program:20s} {row.settings:14s} error {row.error:.2e}  {row.seconds:.1f} s", flush=True)
     if arguments.page:
         picture = arguments.page.with_suffix(".png")
-        plot([*rows, *stored()], picture)
-        write_page(arguments.page, page([*rows, *stored()], picture.name))
+        found = measurement(arguments.page, rows or None)
+        plot(all_rows(found), picture)
+        write_page(arguments.page, page(found, picture.name), kept=arguments.kept)
 
 
 if __name__ == "__main__":

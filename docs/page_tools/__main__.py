@@ -1,21 +1,31 @@
-"""Makes one page: python -m page_tools NAME [--fresh], with docs and tests/support on PYTHONPATH."""
+"""Makes one page: python -m page_tools NAME [--fresh] [--present] [--to FOLDER], with docs and tests/support on
+PYTHONPATH; to another folder, its runs are kept there too."""
 
 from __future__ import annotations
 
-import sys
+import argparse
 from importlib import import_module
+from pathlib import Path
 
-from page_tools.page import write, write_inputs
+from page_tools.page import write
+from page_tools.places import PAGES, RUNS
 from page_tools.work import Work
 
 
-def main(name: str, *options: str) -> None:
+def main(*words: str) -> None:
     """Make it from its runs, which are made where they are not kept."""
-    generator = import_module(f"pages.{name}")
-    work = Work(name, fresh="--fresh" in options)
-    write(generator.page(work), name, work.outdated)
-    write_inputs(name, work.inputs)
+    parser = argparse.ArgumentParser()
+    parser.add_argument("name")
+    parser.add_argument("--fresh", action="store_true")
+    parser.add_argument("--present", action="store_true")
+    parser.add_argument("--to", type=Path)
+    given = parser.parse_args(words or None)
+    runs, folder = (given.to / "runs", given.to) if given.to else (RUNS, PAGES)
+    work = Work(given.name, fresh=given.fresh, present=given.present, runs=runs)
+    page = import_module(f"pages.{given.name}").page(work)
+    folder.mkdir(parents=True, exist_ok=True)
+    write(page, given.name, work, folder)
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main()

@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import rigidfluid
-from page_tools.record import CostTable, Recorder
+from page_tools.cost_table import CostTable
+from page_tools.made import Made
 from rigidfluid.core.model.ranks import ALONE
 from rigidfluid.core.output.checkpoint import read_checkpoint
 from rigidfluid.core.output.history import History
@@ -98,16 +99,16 @@ def _found(scene: Scene, folder: Path) -> str:
 
 
 def _run(scene: Scene, folder: Path, resume: bool) -> None:
-    recorder, cost = Recorder(folder, resume), CostTable(folder, resume)
+    made, cost = (Made.read(folder) if resume else Made()).now(0.0), CostTable(folder, resume)
+    began: list[bool] = []
 
     def observe(now: Progress) -> None:
-        if not recorder.began:
-            recorder.note()
+        if not began:
+            began.append(True)
+            made.write(folder)
         cost.add(now)
 
     try:
         rigidfluid.run(scene, folder, resume=resume, progress=observe)
     finally:
         cost.close()
-        if recorder.began:
-            recorder.note()

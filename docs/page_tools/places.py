@@ -8,8 +8,9 @@ ROOT = Path(__file__).resolve().parents[2]
 SCENES, STUDIES = ROOT / "scenes", ROOT / "studies"
 GENERATORS = ROOT / "docs" / "pages"
 PAGES = ROOT / "docs" / "validation"
-INPUTS = PAGES / "inputs"
-RUNS = ROOT / "out" / "validation"
+RECORDS = PAGES / "records"
+RUNS, CHECKS = ROOT / "out" / "validation", ROOT / "out" / "pages"
+"""Where runs are kept, and where quick pages are made to be compared."""
 
 
 def generators() -> dict[str, Path]:

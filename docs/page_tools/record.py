@@ -1,84 +1,88 @@
-"""What is kept beside results: what they were made from, and what each step has cost."""
+"""The record of a page: when, by which commit and versions it was made, its runs, and what its files are since."""
 
 from __future__ import annotations
 
-import csv
 import json
-import time
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import TextIO
+from typing import Any
 
-from page_tools.inputs import Inputs, merged, sources
-from rigidfluid.core.run.run import Progress
-
-RECORD, PROGRESS = "made.json", "progress.csv"
-SOLVERS = ("src/", "plugins/", "out/")
-"""Where those inputs are that results follow from once their scene is given: sources, and runs without a record."""
-COLUMNS = ("time", "step", "wall_time", "cpu_seconds")
+from page_tools.first_steps import Steps
+from page_tools.places import PAGES, RECORDS, ROOT
+from page_tools.provenance import file_digest, source_digest, text_digest
+from page_tools.settings import Settings
 
 
-def read_record(folder: Path) -> Inputs:
-    """What results were made from; of those that were made without these tools, that nothing is known."""
-    if not (folder / RECORD).exists():
-        return {f"out/validation/{folder.parent.name}/{folder.name}": "not recorded"}
-    return _of_solvers(json.loads((folder / RECORD).read_text(encoding="utf-8")))
+@dataclass(frozen=True)
+class RunRecord:
+    """A run: the ``command`` that makes it, by hand, or its ``tables``; by which ``commits`` it was made, its CPU time
+    [s], and its first ``steps``."""
+
+    command: str
+    settings: Settings
+    commits: tuple[str, ...]
+    cpu_seconds: float
+    steps: Steps
 
 
-def _of_solvers(inputs: Inputs) -> Inputs:
-    return {name: known for name, known in inputs.items() if name.startswith(SOLVERS)}
+@dataclass(frozen=True)
+class Record:
+    """What is known of a page.
 
-
-class Recorder:
-    """Writes the record of results as they are made; of what is ``resumed``, earlier sources count too."""
-
-    def __init__(self, folder: Path, resumed: bool) -> None:
-        self._path = folder / RECORD
-        self._before = read_record(folder) if resumed else {}
-        self.began = False
-
-    def note(self) -> None:
-        """Note what is loaded now, but no page: results follow from their scene or study, whoever asks for them."""
-        self.began = True
-        known = merged(self._before, _of_solvers(sources()))
-        self._path.write_text(json.dumps(known, indent=0) + "\n", encoding="utf-8")
-
-
-class CostTable:
-    """progress.csv beside a run: after each step its time, its length, and the seconds since the run was started.
-
-    Of a run that is ``resumed``, CPU time counts up to the checkpoint; of steps after it, which are made again, it is
-    forgotten.
+    ``sources`` are digests of what has made its runs, ``texts`` those of what its generators say, by path, and
+    ``files`` those of the page and its figures; ``cpu_seconds`` is of the page and all runs, also of those that have
+    no entry in ``runs``, as they are made by the page itself or by a study; None of pages older than their records.
     """
 
-    def __init__(self, folder: Path, resumed: bool) -> None:
-        self._path = folder / PROGRESS
-        self._rows = _rows(self._path) if resumed else []
-        self._start = time.process_time()
-        self._file: TextIO | None = None
+    made: str
+    commit: str
+    cpu_seconds: float | None
+    versions: dict[str, str] = field(default_factory=dict)
+    sources: tuple[str, ...] = ()
+    texts: dict[str, str] = field(default_factory=dict)
+    files: dict[str, str] = field(default_factory=dict)
+    runs: dict[str, RunRecord] = field(default_factory=dict)
 
-    def add(self, now: Progress) -> None:
-        """Write the row of a step."""
-        if self._file is None:
-            self._begin(now.time)
-        before = self._rows[-1][-1] if self._rows else 0.0
-        spent = before + time.process_time() - self._start
-        print(now.time, now.step, now.elapsed, spent, sep=",", file=self._file)
+    def write(self, name: str, folder: Path = RECORDS) -> None:
+        """Write it beside the page, a run a line."""
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / f"{name}.json").write_text(_json_lines(asdict(self)), encoding="utf-8")
 
-    def close(self) -> None:
-        """Write no more."""
-        if self._file is not None:
-            self._file.close()
+    def edited(self, pages: Path = PAGES) -> list[str]:
+        """Files of the page that are not what was written."""
+        return [file for file, known in self.files.items() if file_digest(pages / file) != known]
 
-    def _begin(self, first: float) -> None:
-        self._rows = [row for row in self._rows if row[0] < first]
-        self._file = self._path.open("w", buffering=1, encoding="utf-8")
-        for row in (COLUMNS, *self._rows):
-            print(*row, sep=",", file=self._file)
+    def reworded(self) -> list[str]:
+        """Modules of docs/pages that say something else since."""
+        return [path for path, known in self.texts.items() if text_digest(ROOT / path) != known]
+
+    @property
+    def making(self) -> str:
+        """By what it was made, and for how much CPU time."""
+        cost = "in an unknown time" if self.cpu_seconds is None else f"in {self.cpu_seconds:.0f} s of CPU time"
+        return f"made on {self.made} at {self.commit}, {cost}"
+
+    @property
+    def is_present(self) -> bool:
+        """Whether it was made by what is here: the same sources alone, the same words, the same files."""
+        return self.sources == (source_digest(),) and not self.reworded() and not self.edited()
 
 
-def _rows(path: Path) -> list[tuple[float, ...]]:
-    """Those that are whole: a run that was killed may have left half of one."""
+def _json_lines(told: dict[str, Any]) -> str:
+    runs = ",\n".join(f"  {json.dumps(label)}: {json.dumps(run)}" for label, run in told["runs"].items())
+    rest = (f" {json.dumps(key)}: {json.dumps(value)}" for key, value in told.items() if key != "runs")
+    return "{\n" + ",\n".join([*rest, f' "runs": {{\n{runs}\n }}']) + "\n}\n"
+
+
+def read_record(name: str, folder: Path = RECORDS) -> Record | None:
+    """The record of a page; None where there is none."""
+    path = folder / f"{name}.json"
     if not path.exists():
-        return []
-    with path.open(newline="", encoding="utf-8") as file:
-        return [tuple(map(float, row)) for row in list(csv.reader(file))[1:] if len(row) == len(COLUMNS)]
+        return None
+    told = json.loads(path.read_text(encoding="utf-8"))
+    runs = {label: _run(run) for label, run in told.pop("runs").items()}
+    return Record(**told | {"runs": runs, "sources": tuple(told["sources"])})
+
+
+def _run(told: dict[str, Any]) -> RunRecord:
+    return RunRecord(**told | {"settings": Settings(**told["settings"]), "commits": tuple(told["commits"])})

@@ -6,16 +6,19 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import rigidfluid
-from page_tools.inputs import Inputs, changed, hashes, merged, sources
+from page_tools.cpu_time import cpu_seconds
+from page_tools.first_steps import STEPS, first_steps, steps_of
 from page_tools.kept_run import Run, keep_run
-from page_tools.places import RUNS, SCENES, STUDIES
-from page_tools.record import Recorder, read_record
+from page_tools.kept_tests import Found, kept_tests
+from page_tools.made import Made
+from page_tools.places import ROOT, RUNS, SCENES, STUDIES
+from page_tools.provenance import commit, source_digest
+from page_tools.record import RunRecord
+from page_tools.settings import Settings, override, settings_of
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.named_files import named_files
 from rigidfluid.post.progress import RunsProgress
 from rigidfluid.post.studies import load_study, run_study
 from rigidfluid.post.studies.results import Results
-from rigidfluid.post.studies.run import TABLE
 
 
 class Work:
@@ -27,15 +30,18 @@ class Work:
         Of the page.
     fresh : bool
         Whether to run all anew.
+    present : bool
+        Whether to run anew what other sources than the present ones have made.
 
-    Its ``folder``, out/validation/NAME, is where they are kept.
+    Its ``folder``, out/validation/NAME, is where they are kept; ``runs`` is what is recorded of each run.
     """
 
-    def __init__(self, name: str, fresh: bool = False, runs: Path = RUNS) -> None:
-        self.folder, self._fresh = runs / name, fresh
-        self._files: set[Path] = set()
-        self._kept: dict[str, Inputs] = {}
-        sources()  # as they are now, if they are edited while it goes on
+    def __init__(self, name: str, *, fresh: bool = False, present: bool = False, runs: Path = RUNS) -> None:
+        self.folder, self._fresh, self._present = runs / name, fresh, present
+        self.runs: dict[str, RunRecord] = {}
+        self._made: dict[str, Made] = {}
+        self._earlier = -cpu_seconds()
+        source_digest()  # as they are now, if they are edited while it goes on
 
     def run(self, label: str, scene: str | Scene, overrides: Iterable[str] = (), *, may_stop: bool = False) -> Run:
         """A scene, run in out/validation/NAME/LABEL, or taken from there.
@@ -52,49 +58,72 @@ class Work:
             Whether a step that fails leaves the run as far as it came, in place of a StepError.
         """
         scene = self.scene(scene, overrides) if isinstance(scene, str) else scene
-        run = keep_run(scene, self.folder / label, fresh=self._fresh, may_stop=may_stop)
-        self._kept[label] = read_record(run.folder)
+        folder, start = self.folder / label, cpu_seconds()
+        run = keep_run(scene, folder, fresh=self._anew(folder), may_stop=may_stop)
+        made, settings = self._note(label, folder, run.cpu_seconds, start), settings_of(scene)
+        self.runs[label] = RunRecord(
+            settings.command, settings, made.commits, round(run.cpu_seconds, 1), steps_of(run.history)
+        )
         return run
+
+    def watch(self, label: str, settings: Settings) -> None:
+        """Record the first steps of a scene that is run elsewhere, as by a study, so that others are seen later."""
+        start = cpu_seconds()
+        steps = first_steps(settings.scene, STEPS)
+        spent = round(cpu_seconds() - start, 1)
+        self.runs[label] = RunRecord(settings.command, settings, (commit(),), spent, steps)
 
     def scene(self, name: str, overrides: Iterable[str] = ()) -> Scene:
         """A scene of scenes/."""
-        scene = rigidfluid.load_scene(self.file(SCENES / name), overrides)
-        for path in named_files(scene.to_dict()):
-            self.file(Path(path))
-        return scene
+        return rigidfluid.load_scene(SCENES / name, overrides)
 
     def study(self, name: str) -> Results:
         """The study studies/NAME.toml, with the runs that are kept of it."""
-        study, folder = load_study(self.file(STUDIES / f"{name}.toml")), self.folder / f"study_{name}"
-        if study.scene is not None:
-            self.file(study.scene.resolve())
+        study, folder = load_study(STUDIES / f"{name}.toml"), self.folder / f"study_{name}"
         print(f"{self.folder.name}: study {name}", flush=True)
-        recorder = Recorder(folder, resumed=(folder / TABLE).exists() and not self._fresh)
+        start, kept = cpu_seconds(), folder.exists() and not self._anew(folder)
+        before = Made.read(folder) if kept else Made()
 
         def observe(now: RunsProgress) -> None:
             if now.done.is_integer():
-                recorder.note()
+                before.now(cpu_seconds() - start).write(folder)
 
-        results, _ = run_study(study, folder, fresh=self._fresh, progress=observe)
-        if recorder.began:
-            recorder.note()
-        self._kept[f"study {name}"] = read_record(folder)
+        results, _ = run_study(study, folder, fresh=not kept, progress=observe)
+        self._note(f"study {name}", folder, Made.read(folder).cpu_seconds, start)
+        if study.scene is not None:
+            overrides = [override(key, value) for key, value in (study.tables.set | results.plan[0]).items()]
+            self.watch(f"study {name}", Settings(str(study.scene.resolve().relative_to(ROOT)), overrides))
         return results
 
-    def file(self, path: Path) -> Path:
-        """A file that the page is made from."""
-        self._files.add(path)
-        return path
-
-    @property
-    def inputs(self) -> Inputs:
-        """All that the page is made from: files, what is loaded now, and what was when its runs were made."""
-        found = sources() | hashes(self._files)
-        for kept in self._kept.values():
-            found = merged(found, kept)
+    def tests(self, path: Path) -> Found:
+        """What the validation tests of a file have found."""
+        print(f"{self.folder.name}: {path.name}", flush=True)
+        start = cpu_seconds()
+        found = kept_tests(path, self.folder, fresh=self._fresh)
+        self._earlier += max(found.cpu_seconds - (cpu_seconds() - start), 0.0)
         return found
 
+    def _anew(self, folder: Path) -> bool:
+        return self._fresh or (self._present and folder.exists() and not Made.read(folder).is_present)
+
+    def _note(self, label: str, folder: Path, seconds: float, start: float) -> Made:
+        """Note what has made results that took some ``seconds``, and what of them was before this process [s]."""
+        self._made[label] = made = Made.read(folder)
+        self._earlier += max(seconds - (cpu_seconds() - start), 0.0)
+        return made
+
     @property
-    def outdated(self) -> dict[str, list[str]]:
-        """By run, the sources that have changed since it was made."""
-        return {label: files for label, kept in self._kept.items() if (files := changed(kept))}
+    def cpu_seconds(self) -> float:
+        """CPU time of all that is kept, and of making the page until now [s]."""
+        return cpu_seconds() + self._earlier
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """Digests of all sources that have made its runs, and of the present ones, that have made the rest."""
+        kept = [source for made in self._made.values() for source in made.sources]
+        return tuple(dict.fromkeys([*kept, source_digest()]))
+
+    @property
+    def outdated(self) -> dict[str, str]:
+        """The commits that have made a run, by its name, where other sources than the present ones were at it."""
+        return {label: ", ".join(made.commits) for label, made in self._made.items() if not made.is_present}

@@ -197,8 +197,7 @@ def before_kissing(pairs: dict[str, Pair]) -> str:
 
 {table(head, rows)}
 
-Before [grad-div](../numerics.md#grad-div) noise in the wake took 3 to 5 % of the energy above a step of .00025 s, with
-a jump and no order (3e-2 and 5e-2 beside 7e-6). What longer steps leave since is on the page of [wakes](wakes.md).
+What longer steps take of the energy in the wake is on the page of [wakes](wakes.md).
 
 The published points were read from a figure. Their velocities, integrated from release to kissing, give ways that
 differ from those of their own heights by {integrated[0]:.2%} (trailing) and {integrated[1]:.2%} (leading) of the

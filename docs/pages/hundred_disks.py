@@ -11,6 +11,7 @@ from matplotlib.patches import Circle
 from page_tools import Page, Run, Work, table
 
 from pages._studies import study_plot, study_table
+from rigidfluid.post.movies.make_movie import Look, movie
 
 RUNS = {
     "shipped": ("as shipped", []),
@@ -52,15 +53,13 @@ def page(work: Work) -> Page:
         stages=", ".join(f"{stage} {100 * seconds / sum(stages.values()):.0f} %" for stage, seconds in stages.items()),
         study=study_table(study),
     )
-    return Page(
-        "A hundred disks settle",
-        text,
-        {"": moments(shipped, first), "_cost": cost(shipped), "_heights": heights(disks), "_study": study_plot(study)},
-    )
+    seen = movie(shipped.folder, work.folder / "movie.gif", Look(show="vorticity"))
+    figures_shown = {"": moments(shipped, first), ".gif": seen, "_cost": cost(shipped), "_heights": heights(disks)}
+    return Page("A hundred disks settle", text, figures_shown | {"_study": study_plot(study)})
 
 
 TEXT = """Case 6 of arXiv:2402.19093 with the paper's law, box and step, `scenes/hundred_disks.toml`. [The run as a
-movie](hundred_disks.gif): `rigidfluid movie out/validation/hundred_disks/shipped --show vorticity`.
+movie](hundred_disks.gif), by `rigidfluid movie --show vorticity`.
 
 {figures}
 

@@ -53,7 +53,8 @@ def page(work: Work) -> Page:
     head += ("the second goes back [d]", "smallest gap [d]", "created, lost [%]")
     head += ("steps, rejected, new meshes, failed", "unknowns", "CPU [s]", "until [ms]")
     rows = [(STENOSIS[name][0], *figures(run)) for name, run in runs.items()]
-    text = ABOUT.format(figures=table(head, rows), **judged({name: passage(run) for name, run in runs.items()}))
+    passages = {name: passage(run) for name, run in runs.items()}
+    text = ABOUT.format(figures=table(head, rows), **judged(passages), **law_forces(runs["shipped"]))
     return Page("Two disks in a stenosed artery", text, {"": picture(runs["shipped"])})
 
 
@@ -123,6 +124,14 @@ def judged(found: dict[str, Passage]) -> dict[str, object]:
         told[f"{name}_between"] = ", ".join(f"{abs(a.between - b.between):.4f}" for a, b in pairs)
         told[f"{name}_through"] = ", ".join(f"{abs(a.through[0] - b.through[0]):.3f}" for a, b in pairs)
     return told
+
+
+def law_forces(run: Run) -> dict[str, float]:
+    """Greatest forces of the law that joins centres, and of that which joins contact points [dyn/cm]."""
+    law = run.scene.to_dict()["contact"]
+    numbers = {"disks": law["epsilon"], "walls": law["epsilon_wall"]}
+    joined = {f"{name}_joined": 4.0 / 27.0 * law["range"] ** 3 / epsilon for name, epsilon in numbers.items()}
+    return joined | {name: DIAMETER * law["range"] ** 2 / epsilon for name, epsilon in numbers.items()}
 
 
 def way_of(run: Run, name: str) -> dict[str, np.ndarray]:
@@ -209,8 +218,9 @@ disk passes first, and the upper one stops, goes back and follows (Van Landeghem
   change of it, as by another mesh, moves all that follows.
 * **What decides the order.** The lower disk's lead at 4 ms is {leads}, and {mirrored:.1e} d where it is the one farther
   out (the sixth row): meshes that are not symmetric add {asymmetry:.0e} d. So the d/4000 {decides} with edges of d/7.
-* **The law.** The force joins centres: at most d·range²/ε = 7.65 dyn/cm between the disks and 10.2 at walls, and 1.2
-  dyn/cm at a gap of .23d. The form that joins contact points gives .40 and .53 at most and nothing at contact.
+* **The law.** The force joins centres: at most d·range²/ε = {disks:.2f} dyn/cm between the disks and {walls:.1f} at
+  walls. The form that joins contact points gives {disks_joined:.2f} and {walls_joined:.2f} at most and nothing at
+  contact.
 * **The pressure.** The paper's "541 Pa" is 5410 dyn/cm². The disks then pass within {strong.through[1]:.2f} ms, and the
   second goes back {strong_over_shipped:.0%} as far. The scene has 541 dyn/cm², with which they pass within
   {through:.1f} ms; in the paper's pictures it takes .01 s.

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from page_tools import Page, Work, table
-from stokes_contacts import rows
+from page_tools.settings import settings_of
+from stokes_contacts import cases, rows
 
 HEAD = (
     *("case", "stepping", "step [s]", "force / weight", "speed, late [cm/s]", "gap, less exact [cm]"),
@@ -13,6 +14,8 @@ HEAD = (
 
 def page(work: Work) -> Page:
     """A row for each case, stepping and step."""
+    for name, scene, _, (step, *_) in cases():
+        work.watch(name, settings_of(scene(step, "substeps")))
     return Page("Contacts in Stokes flow", ABOUT.format(rows=table(HEAD, rows())))
 
 

@@ -7,13 +7,12 @@ import re
 import numpy as np
 from matplotlib.figure import Figure
 from page_tools import Page, Run, Work, table
-from swimmer_2d import ADVANCE, SCENE, SWIMS, scene, swim_figures
+from swimmer_2d import ADVANCE, SWIMS, scene, swim_figures
 
 
 def page(work: Work) -> Page:
     """Displacements in the second cycle, and the path."""
     runs = {label: work.run(folder(label), scene(overrides)) for label, overrides in SWIMS.items()}
-    work.file(SCENE)
     rows = [(label, *swim_figures(run.history).values()) for label, run in runs.items()]
     text = ABOUT.format(figures=table(("case", *swim_figures(runs["as shipped"].history)), rows), **judged(runs))
     return Page("A three-sphere swimmer", text, {"": ways(runs["as shipped"])})

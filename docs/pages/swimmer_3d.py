@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 from page_tools import Page, Work, table
-from spheres_in_box import BACK, BACK_FROM_SHORT, SCENE, Swim, drag, swim_of, swim_scene, without_box
+from spheres_in_box import BACK, BACK_FROM_SHORT, Swim, drag, swim_of, swim_scene, without_box
 from spheres_on_a_line import cycle as exact_cycle
 from spheres_on_a_line import drag as exact_drag
 
@@ -32,7 +32,6 @@ OTHER_SWIMS: dict[str, tuple[str, list[str]]] = {
 
 def page(work: Work) -> Page:
     """Displacements over boxes, strokes, steps and meshes, and drags."""
-    work.file(SCENE)
 
     def swim(label: str, **given: Any) -> Swim:
         return swim_of(work.run(label, swim_scene(**given)).history)

@@ -61,8 +61,7 @@ ABOUT = """
 
 {fast}
 
-Without [stabilisation](../numerics.md#grad-div) 13, 5.5 and .003 % were lost at the first three steps, and the speeds
-were 12.38, 12.77 and 13.21 cm/s.
+What [stabilisation](../numerics.md#grad-div) takes is a column of its own; it is part of the balance.
 
 ## Two disks until they kiss
 

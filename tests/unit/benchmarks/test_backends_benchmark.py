@@ -35,11 +35,12 @@ def test_a_page_has_a_table_for_each_case_and_the_reason_of_what_is_missing(back
     found = {
         "date": "2026-01-01",
         "machine": "2 cores",
+        "command": "python here",
         "steps": 20,
         "rows": {"one, 2 threads": [row(backends, 100, 0.01), row(backends, 10_000, 1.0)]},
         "skipped": {"other, 1 thread": "not here"},
     }
-    page = backends.page(found, "python here")
+    page = backends.page(found)
     assert "| [ms a step] | 100 | 10000 | exponent |" in page
     assert "| **whole step** | 10.0 | 1000.0 | 1.00 |" in page
     assert "| iterate | 5.0 | 500.0 | 1.00 |" in page

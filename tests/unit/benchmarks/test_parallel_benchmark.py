@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from benchmark_scripts import benchmark
+from page_tools.places import PAGES
 
 from rigidfluid.errors import PluginError
 from rigidfluid.registry import FLUID_BACKEND, Registry
@@ -30,6 +31,24 @@ def child():
 def processes():
     with benchmark("processes") as module:
         yield module
+
+
+def test_the_page_follows_from_what_is_kept():
+    with benchmark("parallel_page") as script:
+        kept = json.loads(script.STORE.read_text(encoding="utf-8"))
+        page = script.page(kept)
+        assert (PAGES / "parallel.md").read_text(encoding="utf-8").startswith(page.rstrip())
+        slow = [row | {"seconds_step": 2.5, "speedup_step": 1.9} for row in kept["steps"]["rows"]]
+        assert "The whole step is 1.2 to 1.4 times as fast on two processes in 2D and 1.6 to 1.8 times in 3D." in page
+        changed = script.page(kept | {"steps": kept["steps"] | {"rows": slow}})
+        assert "1.9 to 1.9 times as fast on two processes in 2D and 1.9 to 1.9 times in 3D." in changed
+
+
+def test_the_model_of_a_step_has_its_terms():
+    with benchmark("step_model") as script:
+        found = script.Constants(2e-5, 700, 300, 1e4)
+        assert found.step(1000, 1, 1.0, 1.0) == pytest.approx(2e-2)
+        assert found.step(8000, 8, 1e-3, 1e6) == pytest.approx(2e-2 + 1e-3 * (700 * 3 + 300) + 1e4 * 100 / 1e6)
 
 
 def has_dolfinx() -> bool:

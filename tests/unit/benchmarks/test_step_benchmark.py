@@ -33,7 +33,7 @@ def test_a_page_has_the_ratio_to_each_way_and_all_stages(step):
         "ngsolve_stages": {way: {"solve": seconds} for way, seconds in theirs.items()},
         "ratio": {way: 0.05 / seconds for way, seconds in theirs.items()},
     }
-    page = step.page([row])
+    page = step.page({"date": "2026-01-01", "load": 1.0, "cores": 2, "rows": [row]})
     assert "| 45000 | 50 | 400 | 0.12 | 200 | 0.25 | 100 | 0.50 |" in page
     for line in ("| iterate | 50.0 |", "| NGSolve umfpack: solve | 400.0 |", "| NGSolve reuse: solve | 100.0 |"):
         assert line in page

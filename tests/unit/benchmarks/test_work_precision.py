@@ -1,5 +1,7 @@
 """The benchmark of error against run time: passing times, errors, and its page."""
 
+from dataclasses import asdict
+
 import numpy as np
 import pytest
 from benchmark_scripts import benchmark
@@ -25,8 +27,9 @@ def test_the_error_is_the_largest_over_the_last_time(work_precision):
 
 def test_a_page_says_what_is_measured_and_what_is_stored(work_precision, tmp_path):
     rows = [work_precision.Row("rigidfluid", "0.05, 0.008", 1e-3, 3.21), work_precision.Row("other", "", 2e-3, 1.0)]
+    found = {"date": "2026-01-01", "load": 1.0, "cores": 2, "rows": [asdict(row) for row in rows]}
     rows += work_precision.stored()
-    page = work_precision.page(rows, "picture.png")
+    page = work_precision.page(found, "picture.png")
     assert "| rigidfluid | 0.05, 0.008 | 1.0e-03 | 3.2 |" in page
     assert page.count("| stored |") == len(work_precision.stored()) == 3
     assert "Stored, not measured with the others: OpenFOAM" in page

@@ -1,10 +1,10 @@
-"""Pages are made from kept runs, say what they were made from, and are named where that has changed."""
+"""Pages are made from kept runs, and have a record of what made them."""
 
 from __future__ import annotations
 
 import csv
 import json
-from importlib import import_module
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +13,12 @@ from benchmark_scripts import benchmark
 from falling import SCENES
 from matplotlib.figure import Figure
 from page_tools import Page, Work, page, table
-from page_tools.inputs import LOADED, SEVERAL, changed, hashes, merged, sources
+from page_tools.cost_table import CostTable
 from page_tools.kept_run import keep_run
-from page_tools.record import CostTable, read_record
-from page_tools.stale import stale
+from page_tools.made import UNKNOWN, Made
+from page_tools.provenance import commit, file_digest, source_digest, text_digest
+from page_tools.record import read_record
+from page_tools.settings import Settings, settings_of
 
 import rigidfluid
 from rigidfluid.core.run.run import Progress
@@ -127,48 +129,77 @@ def test_a_run_that_was_made_elsewhere_is_used_and_said_to_be_of_unknown_sources
     work = Work("page", runs=tmp_path)
     run = work.run("run", scene())
     assert run.cpu_seconds == run.summary["cpu_time"]
-    assert work.outdated == {"run": ["out/validation/page/run"]}
-    assert "out/validation/page/run" in changed(work.inputs)
+    assert work.outdated == {"run": UNKNOWN}
+    assert work.sources == (UNKNOWN, source_digest())
 
 
-def test_a_run_of_unknown_sources_stays_one_when_it_goes_on(tmp_path: Path) -> None:
+def test_a_run_of_other_sources_stays_one_when_it_goes_on(tmp_path: Path) -> None:
     stop_at(tmp_path / "page" / "run", 0.65 * END)
-    (tmp_path / "page" / "run" / "made.json").unlink()
+    Made(("before",), ("others",)).write(tmp_path / "page" / "run")
     work = Work("page", runs=tmp_path)
     work.run("run", scene())
-    assert work.outdated == {"run": ["out/validation/page/run"]}
+    assert work.outdated == {"run": f"before, {commit()}"}
+    assert work.sources == ("others", source_digest())
 
 
-def test_a_file_that_is_edited_while_a_page_is_made_counts_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
-    name = "src/rigidfluid/core/run/stepper.py"
-    monkeypatch.setitem(LOADED, name, "as it was")
-    assert changed(sources()) == [name]
-
-
-def test_inputs_are_what_computes_and_the_files_that_were_read(tmp_path: Path) -> None:
-    work = Work("page", runs=tmp_path)
-    work.run("run", "dry_bounce.toml", [f"time.end={END}"])
-    work.scene("insertion_3d.toml")
-    for name in (
-        "src/rigidfluid/core/run/stepper.py",
-        "tests/support/falling.py",
-        "scenes/dry_bounce.toml",
-        "scenes/insertion_3d.toml",
-        "scenes/insertion/bolt.stl",
-    ):
-        assert name in work.inputs
-    assert not [name for name in work.inputs if "reports" in name or "page_tools" in name or "/unit/" in name]
-    assert changed(work.inputs) == []
+def test_runs_of_other_sources_are_made_anew_where_the_present_are_asked_for(tmp_path: Path) -> None:
+    keep_run(scene(), tmp_path / "page" / "run")
+    before = (tmp_path / "page" / "run" / "summary.json").stat().st_mtime_ns
+    work = Work("page", present=True, runs=tmp_path)
+    work.run("run", scene())
+    assert (tmp_path / "page" / "run" / "summary.json").stat().st_mtime_ns == before
+    Made(("before",), ("others",)).write(tmp_path / "page" / "run")
+    work = Work("page", present=True, runs=tmp_path)
+    work.run("run", scene())
+    assert (tmp_path / "page" / "run" / "summary.json").stat().st_mtime_ns > before
     assert work.outdated == {}
+    assert work.sources == (source_digest(),)
 
 
-def test_a_page_is_no_input_of_its_runs(tmp_path: Path) -> None:
-    """Its text may be edited, and its runs are no older for that."""
-    import_module("pages.detectors")
+def test_a_run_is_recorded_by_a_command_that_makes_it(tmp_path: Path) -> None:
     work = Work("page", runs=tmp_path)
     run = work.run("run", "dry_bounce.toml", [f"time.end={END}"])
-    assert "docs/pages/detectors.py" in work.inputs
-    assert "docs/pages/detectors.py" not in read_record(run.folder)
+    recorded = work.runs["run"]
+    assert recorded.command == f"rigidfluid run scenes/dry_bounce.toml --set time.end={END}"
+    assert recorded.settings.scene.to_dict() == run.scene.to_dict()
+    assert recorded.commits == (commit(),)
+    assert list(recorded.steps) == [str(number) for number in (1, 2, 4, 8, 16, 32) if number <= run.summary["steps"]]
+
+
+@pytest.mark.parametrize(
+    ("file", "change"),
+    [
+        ("dry_bounce.toml", lambda tables: tables["body"][1].update(density=2.5, position=[0.7, 0.6])),
+        ("falling_disk_window.toml", lambda tables: tables["domain"].pop("window")),
+        ("vortex_induced.toml", lambda tables: tables["body"][0].pop("spring")),
+        ("ellipse_xia.toml", lambda tables: tables.update(boundary=[{"on": "all", "type": "wall"}])),
+    ],
+)
+def test_a_scene_made_from_a_file_is_told_by_its_settings(file: str, change: object) -> None:
+    tables = rigidfluid.load_scene(SCENES / file).to_dict()
+    change(tables)  # type: ignore[operator]
+    changed = rigidfluid.scene_from_dict(tables)
+    settings = settings_of(changed)
+    assert settings.file == f"scenes/{file}"
+    assert settings.overrides
+    assert settings.scene.to_dict() == changed.to_dict()
+
+
+def test_a_scene_without_a_file_is_told_by_its_tables() -> None:
+    tables = scene().to_dict()
+    tables["scene"]["name"] = "nobody_knows_it"
+    settings = settings_of(rigidfluid.scene_from_dict(tables))
+    assert settings.command == ""
+    assert settings.scene.to_dict() == tables
+
+
+def test_cpu_time_of_kept_runs_counts(tmp_path: Path) -> None:
+    keep_run(scene(), tmp_path / "page" / "run")
+    summary = tmp_path / "page" / "run" / "summary.json"
+    summary.write_text(json.dumps(json.loads(summary.read_text()) | {"cpu_time": 1000.0}))
+    work = Work("page", runs=tmp_path)
+    work.run("run", scene())
+    assert 1000.0 <= work.cpu_seconds < 1100.0
 
 
 def test_a_study_is_kept_with_its_inputs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -187,69 +218,105 @@ reference = "finest"
 """
     )
     monkeypatch.setattr("page_tools.work.STUDIES", tmp_path)
-    monkeypatch.setattr("page_tools.work.hashes", lambda files: {str(path): "" for path in files})
     first = Work("page", runs=tmp_path)
     results = first.study("bounce")
     again = Work("page", runs=tmp_path)
     assert again.study("bounce").rows == results.rows
-    assert str(SCENES / "dry_bounce.toml") in again.inputs
     assert again.outdated == {}
+    assert Made.read(tmp_path / "page" / "study_bounce").cpu_seconds > 0.0
+    watched = again.runs["study bounce"]
+    assert watched.command == "rigidfluid run scenes/dry_bounce.toml --set time.end=0.004 --set time.step=0.0005"
+    assert list(watched.steps) == ["1", "2", "4"]
 
 
-def test_runs_by_several_versions_of_a_file_count_as_changed() -> None:
-    now = sources()
-    name = next(iter(now))
-    assert changed(now) == []
-    both = merged(now, now | {name: "older"})
-    assert both[name] == SEVERAL
-    assert changed(both) == [name]
+def test_names_change_nothing_that_a_module_says(tmp_path: Path) -> None:
+    module = tmp_path / "page.py"
+    module.write_text('from a import b\nTEXT = "Two words"\nb(TEXT, "column", 3)\n')
+    before = text_digest(module)
+    module.write_text('"""Prose."""\nfrom c import d\nSAID = "Two words"  # prose\nd(SAID, "other_column", 3)\n')
+    assert text_digest(module) == before
+    for text in ('SAID = "Two other words"\nd(SAID, "column", 3)\n', 'SAID = "Two words"\nd(SAID, "column", 4)\n'):
+        module.write_text(text)
+        assert text_digest(module) != before
 
 
-def test_changed_code_makes_a_page_stale_and_prose_does_not(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for module in ("page_tools.inputs.ROOT", "page_tools.page.INPUTS", "page_tools.stale.INPUTS"):
-        monkeypatch.setattr(module, tmp_path)
-    source = tmp_path / "src.py"
-    source.write_text("a = 1\n")
-    page.write(Page("Page", "Text."), "page", {}, tmp_path)
-    assert dict(stale(tmp_path, tmp_path)) == {"page": "made before its inputs were recorded"}
-    page.write_inputs("page", hashes([source]), tmp_path)
-    assert dict(stale(tmp_path, tmp_path)) == {}
-    source.write_text('"""Prose."""\n\na = 1  # prose\n"""Prose."""\n')
-    assert dict(stale(tmp_path, tmp_path)) == {}
-    source.write_text("a = 2\n")
-    assert dict(stale(tmp_path, tmp_path)) == {"page": "1 of 1 inputs have changed: src.py"}
-
-
-def test_a_page_that_a_benchmark_writes_has_inputs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_page_that_a_benchmark_writes_has_a_record(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with benchmark("written_page") as script:
         monkeypatch.setattr(script, "DOCS", tmp_path)
-        monkeypatch.setattr(page, "INPUTS", tmp_path)
-        monkeypatch.setattr(page.write_inputs, "__defaults__", (tmp_path / "inputs",))
         (tmp_path / "validation").mkdir()
         script.write_page(tmp_path / "elsewhere.md", "Text.")
-        assert not (tmp_path / "inputs").exists()
         script.write_page(tmp_path / "validation" / "speed.md", "Text.")
-    known = json.loads((tmp_path / "inputs" / "speed.json").read_text())
-    assert {"src/rigidfluid/core/run/stepper.py", "benchmarks/written_page.py"} <= known.keys()
-    assert changed(known) == []
+    assert not (tmp_path / "records").exists()
+    record = read_record("speed", tmp_path / "validation" / "records")
+    assert record is not None
+    assert record.commit == commit()
+    assert record.edited(tmp_path / "validation") == []
+    assert record.making in (tmp_path / "validation" / "speed.md").read_text()
+    replace(record, made="before", commit="1").write("speed", tmp_path / "validation" / "records")
+    with benchmark("written_page") as script:
+        monkeypatch.setattr(script, "DOCS", tmp_path)
+        script.write_page(tmp_path / "validation" / "speed.md", "Other text.", kept=True)
+    record = read_record("speed", tmp_path / "validation" / "records")
+    assert record is not None
+    assert (record.made, record.commit) == ("before", "1")
+    assert record.edited(tmp_path / "validation") == []
 
 
-def test_a_page_shows_its_figures_and_which_runs_are_older(tmp_path: Path) -> None:
-    shown = Page(
-        "Two disks",
-        f"![Heights](two_heights.png)\n\n{table(('a', 'b'), [('1', '2')])}",
-        {"": Figure(), "_heights": Figure()},
-    )
-    page.write(shown, "two", {"fine": ["src/a.py", "src/b.py"]}, tmp_path)
+def test_what_a_benchmark_measures_is_kept_beside_its_page(tmp_path: Path) -> None:
+    with benchmark("written_page") as script:
+        found = script.measurement(tmp_path / "speed.md", [{"seconds": 1.5}])
+        assert found["rows"] == [{"seconds": 1.5}]
+        assert script.measurement(tmp_path / "speed.md") == found
+
+
+def shown(text: str = "Text.") -> Page:
+    figures = {"": Figure(), "_heights": Figure()}
+    return Page("Two disks", f"![Heights](two_heights.png)\n\n{text}\n\n{table(('a', 'b'), [('1', '2')])}", figures)
+
+
+def test_a_page_shows_its_figures_and_what_made_it(tmp_path: Path) -> None:
+    work = Work("two", runs=tmp_path / "runs")
+    work.run("run", scene())
+    page.write(shown(), "two", work, tmp_path)
     text = (tmp_path / "two.md").read_text()
     assert text.startswith("# Two disks\n\nMade on ")
-    assert "Of its runs, fine are older: 2 of their sources have changed since." in text
+    assert f"at {commit()}, in " in text
+    assert "are older" not in text
     assert "| a | b |\n| --- | --- |\n| 1 | 2 |" in text
     for name in ("two.png", "two_heights.png"):
         assert (tmp_path / name).stat().st_size > 0
         assert f"]({name})" in text
+    record = read_record("two", tmp_path / "records")
+    assert record is not None
+    assert record.runs == work.runs
+    assert set(record.files) == {"two.md", "two.png", "two_heights.png"}
+    assert record.versions["numpy"] == np.__version__
+    assert record.is_present is False  # since its files are elsewhere
+    assert record.edited(tmp_path) == []
+    assert replace(record, files={}).is_present
+    assert not replace(record, files={}, sources=("others",)).is_present
+
+
+def test_a_page_says_which_of_its_runs_are_older(tmp_path: Path) -> None:
+    work = Work("two", runs=tmp_path / "runs")
+    keep_run(scene(), work.folder / "run")
+    Made(("before",), ("others",)).write(work.folder / "run")
+    work.run("run", scene())
+    page.write(shown(), "two", work, tmp_path)
+    assert "Of its runs, run are older, made at before." in (tmp_path / "two.md").read_text()
 
 
 def test_a_figure_that_the_text_does_not_show_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"does not show two_heights\.png"):
-        page.write(Page("Two", "Text.", {"_heights": Figure()}), "two", {}, tmp_path)
+        page.write(Page("Two", "Text.", {"_heights": Figure()}), "two", Work("two", runs=tmp_path), tmp_path)
+
+
+def test_a_record_holds_its_settings(tmp_path: Path) -> None:
+    work = Work("two", runs=tmp_path / "runs")
+    work.run("run", scene(epsilon=1e-7))
+    page.write(Page("Two", "Text."), "two", work, tmp_path)
+    record = read_record("two", tmp_path / "records")
+    assert record is not None
+    assert isinstance(record.runs["run"].settings, Settings)
+    assert record.runs["run"].settings.scene.to_dict() == scene(epsilon=1e-7).to_dict()
+    assert file_digest(tmp_path / "two.md") == record.files["two.md"]

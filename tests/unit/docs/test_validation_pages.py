@@ -8,9 +8,13 @@ from inspect import signature
 from pathlib import Path
 
 import pytest
-from page_tools.places import INPUTS, PAGES, ROOT, generators
+from benchmark_scripts import benchmark
+from page_tools import Work
+from page_tools.make import MEASURED, WITH_DOLFINX, pages
+from page_tools.places import GENERATORS, PAGES, RECORDS, ROOT, generators
+from page_tools.quick import SECONDS, quick
 from page_tools.quotes import disagreements, quotes, unmarked
-from page_tools.stale import recorded
+from page_tools.record import Record, read_record
 
 NAMES = sorted(path.stem for path in PAGES.glob("*.md"))
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -44,8 +48,16 @@ def test_every_generator_makes_a_page(name: str) -> None:
     assert list(signature(import_module(f"pages.{name}").page).parameters) == ["work"]
 
 
+@pytest.mark.parametrize("path", sorted(GENERATORS.glob("*.py")), ids=lambda path: path.stem)
+def test_a_generator_asks_its_work_for_what_there_is(path: Path) -> None:
+    """Also after hours of runs."""
+    asked = set(re.findall(r"\bwork\.(\w+)", path.read_text(encoding="utf-8")))
+    assert {name for name in asked if not hasattr(Work("page"), name)} == set()
+
+
 def test_every_generator_has_a_page() -> None:
-    assert set(generators()) - set(NAMES) == set()
+    """But for that of the validation tests, which take hours."""
+    assert set(generators()) - set(NAMES) <= {"tests"}
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -59,12 +71,41 @@ def test_every_picture_is_shown() -> None:
     assert {path.name for path in PAGES.glob("*.png")} - shown == set()
 
 
-def test_inputs_are_of_pages_and_are_files_that_are_there() -> None:
-    for name, inputs in recorded(INPUTS).items():
-        assert name in NAMES
-        files = [file for file in inputs if file.startswith(("docs/", "scenes/", "studies/"))]
-        assert files
-        assert [file for file in files if not (ROOT / file).is_file()] == [], f"remake docs/validation/{name}.md"
+def test_every_page_is_made_by_the_command() -> None:
+    assert set(NAMES) <= set(pages())
+    assert not set(MEASURED) & set(generators())
+    assert set(WITH_DOLFINX) <= set(pages())
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_page_is_as_it_was_written(name: str) -> None:
+    record = read_record(name)
+    assert record is not None, f"docs/validation/{name}.md has no record"
+    assert record.edited() == [], "a page is made, not edited: python docs/make_validation.py NAME"
+
+
+@pytest.mark.parametrize("name", sorted(path.stem for path in (PAGES / "measured").iterdir()))
+def test_a_page_that_tells_times_follows_from_what_is_kept(name: str) -> None:
+    with benchmark("written_page") as written, benchmark(name) as script:
+        found = written.measurement(PAGES / f"{name}.md")
+        text = script.page(found, f"{name}.png") if name == "work_precision" else script.page(found)
+    assert (PAGES / f"{name}.md").read_text(encoding="utf-8").startswith(text.rstrip())
+
+
+def test_every_record_is_of_a_page() -> None:
+    assert {path.stem for path in RECORDS.iterdir()} == set(NAMES)
+
+
+def test_quick_pages_are_the_cheapest_that_fit(tmp_path: Path) -> None:
+    costs = {"walls": 0.5, "wakes": 0.3, "window": 0.25, "ten_cate": 0.01, "tests": 0.01, "step": 0.01}
+    for name, share in costs.items():
+        Record("today", "commit", share * SECONDS).write(name, tmp_path)
+    Record("today", "commit", None).write("swimmer", tmp_path)
+    assert quick(tmp_path) == ["window", "wakes"]
+
+
+def test_there_are_quick_pages() -> None:
+    assert {"walls", "lammps", "dfg_cylinder"} <= set(quick())
 
 
 def test_every_measured_figure_of_the_readme_names_its_page() -> None:
@@ -104,3 +145,29 @@ def test_a_mark_without_a_figure_is_refused() -> None:
 
 def test_a_figure_without_a_mark_is_seen() -> None:
     assert unmarked(".5<!-- a: b → c -->, .7 s") == [".7"]
+
+
+NEAR = 0.02
+"""Largest distance of a measured figure of the README from its reference, relative."""
+
+
+def far_from_reference(row: str) -> list[tuple[float, float]]:
+    """Figures of a row that are not near the reference beside them: the first one, or one each; a 0 tells nothing."""
+    *_, figures, reference, _, _ = row.split("|")
+    told = [float(number) for number in re.findall(r"(?<![\w.])\d*\.?\d+(?![\w.])", re.sub(r"\(.*?\)", "", reference))]
+    found = [quote.value for quote in quotes(figures)]
+    pairs = zip(found, told if len(told) == len(found) else told[:1], strict=False)
+    return [(one, other) for one, other in pairs if other and abs(one / other - 1.0) > NEAR]
+
+
+def test_the_readme_s_figures_are_near_their_references() -> None:
+    table = README.partition("| case | figure | measured |")[2].partition("\n\n")[0]
+    assert [far for row in table.splitlines()[2:] for far in far_from_reference(row)] == []
+
+
+def test_a_figure_far_from_its_reference_is_seen() -> None:
+    row = "| a | lift | .4809<!-- a: b → c -->, .9<!-- a: d → c --> s | {} | `tests/a.py` |"
+    assert far_from_reference(row.format(".4779, .91 (John 2004)")) == []
+    assert far_from_reference(row.format(".4379, .91")) == [(0.4809, 0.4379)]
+    assert far_from_reference(row.format(".4779; .8; .7 (others)")) == []
+    assert far_from_reference(row.format("0")) == []
