@@ -3,16 +3,18 @@
     python tools/mutants.py [--only TEXT] [--page FILE]
 
 Mutations are in `mutants.toml`: files, texts in them, what each becomes, and the tests that should fail then. Sources
-and tests are copied to a folder of their own; the checkout is left alone. There the tests must first pass, and fail
-where a file cannot be imported, which shows that they test the copy. Then each mutation is tested until a first test
-fails. One with which the tests take far too long is killed, too. A file of compiled kernels is tested with an empty
-cache. Exits with 1 where fewer than 95 % are killed.
+and tests are copied to out/mutants; the checkout is left alone. For each file the tests must first pass as it is, and
+must have imported it. Then each mutation is tested until a first test fails; one with which they take far too long is
+killed, too. A file with compiled kernels is tested with all of them compiled anew. What is known of the same sources
+and tests is not tested again, so that a stopped run goes on. Exits with 1 where fewer than 95 % are killed.
 """
 
 from __future__ import annotations
 
 import argparse
+import hashlib
 import importlib
+import json
 import os
 import resource
 import shutil
@@ -23,8 +25,7 @@ import tempfile
 import tomllib
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import date
 from multiprocessing import get_context
 from pathlib import Path
@@ -32,8 +33,10 @@ from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parents[1]
 LIST = Path(__file__).with_suffix(".toml")
+FOLDER = ROOT / "out" / "mutants"
 SOURCES = Path("src", "rigidfluid")
 COPIED = "src", "tests", "docs", "scenes", "studies", "benchmarks", "plugins", "tools"
+SHARED = "tests/support", "scenes"
 LEFT_OUT = shutil.ignore_patterns("__pycache__", "*.png", "*.gif", "*.egg-info")
 
 PRELOADED = (
@@ -47,6 +50,12 @@ WANTED = 0.95
 
 PATIENCE = 600.0
 """Seconds after which tests are ended."""
+
+KERNEL = "njit"
+"""Word in files with compiled kernels."""
+
+UNUSED = 100
+"""Exit code of tests that pass without the file that is mutated."""
 
 
 class MutationError(Exception):
@@ -95,13 +104,19 @@ class Workshop:
     Tests run in forks of this process, which has imported what is not mutated.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path = FOLDER) -> None:
         self._folder, self._stamp = folder, 0.0
         for name in COPIED:
+            shutil.rmtree(folder / name, ignore_errors=True)
             shutil.copytree(ROOT / name, folder / name, ignore=LEFT_OUT)
         for path in ROOT.glob("*.*"):
             if path.is_file():
                 shutil.copy2(path, folder)
+        sources = sorted((folder / SOURCES).rglob("*.py"))
+        self._keep_kernels(_digest(path for path in sources if KERNEL in path.read_text(encoding="utf-8")))
+        shared = (path for name in SHARED for path in sorted((folder / name).rglob("*")) if path.is_file())
+        self._common = _digest([*sources, *shared])
+        (folder / "outcomes").mkdir(exist_ok=True)
         for name in PRELOADED:
             importlib.import_module(name)
 
@@ -109,49 +124,70 @@ class Workshop:
         """Text of a file of the sources."""
         return (self._folder / SOURCES / file).read_text(encoding="utf-8")
 
-    def verdict(self, tests: Sequence[str], file: str = "", text: str | None = None) -> str:
-        """Verdict of ``tests`` where a file has this ``text``; without one, of the sources as they are."""
-        kernels = self._folder / "kernels"
-        if text is None:
-            return self._run(tests, kernels)
-        if "njit" not in text:
-            with self._replaced(file, text):
-                return self._run(tests, kernels)
-        with self._replaced(file, text), tempfile.TemporaryDirectory(dir=self._folder) as empty:
-            return self._run(tests, Path(empty))
+    def outcome(self, mutation: Mutation) -> Outcome:
+        """Outcome of a mutation; raises MutationError where its tests do not pass without it, or do not import its
+        file."""
+        plain = replace(mutation, text="", becomes="", reason="")
+        if (verdict := self._known(plain)[0]) != "survived":
+            raise MutationError(f"{mutation.file} without a mutation is {verdict} by {mutation.tests}:\n{self.output}")
+        return Outcome(mutation, *self._known(mutation))
 
     @property
     def output(self) -> str:
         """Output of the latest tests."""
         return (self._folder / "output").read_text(encoding="utf-8", errors="replace")
 
-    @contextmanager
-    def _replaced(self, file: str, text: str) -> Iterator[None]:
-        """Another text in a file, of a time that no compiled file is of."""
-        path = self._folder / SOURCES / file
+    def _known(self, mutation: Mutation) -> tuple[str, float]:
+        """Verdict on a mutation and CPU seconds, as they were with the same sources and tests, or else are now."""
+        tests = _digest(self._folder / "tests" / test.split("::")[0] for test in mutation.tests)
+        name = hashlib.sha256(repr((replace(mutation, reason=""), self._common, tests)).encode()).hexdigest()
+        known = self._folder / "outcomes" / f"{name}.json"
+        if not known.exists():
+            before = _cpu_of_children()
+            verdict = self._verdict(mutation)
+            known.write_text(json.dumps((verdict, _cpu_of_children() - before)), encoding="utf-8")
+        verdict, seconds = json.loads(known.read_text(encoding="utf-8"))
+        return verdict, seconds
+
+    def _verdict(self, mutation: Mutation) -> str:
+        """Verdict of the tests of a mutation; its file has a time of which no compiled file is."""
+        if not mutation.text:
+            return self._run(mutation, self._folder / "kernels")
+        text, path = mutation.applied(self.source(mutation.file)), self._folder / SOURCES / mutation.file
         kept = path.with_suffix(".kept")
         path.rename(kept)
         path.write_text(text, encoding="utf-8")
         self._stamp += 10.0
         os.utime(path, (self._stamp, self._stamp))
         try:
-            yield
+            if KERNEL not in text:
+                return self._run(mutation, self._folder / "kernels")
+            with tempfile.TemporaryDirectory() as empty:
+                return self._run(mutation, Path(empty))
         finally:
             kept.replace(path)
 
-    def _run(self, tests: Sequence[str], kernels: Path) -> str:
-        process = get_context("fork").Process(target=_test, args=(self._folder, tests, kernels))
+    def _run(self, mutation: Mutation, kernels: Path) -> str:
+        process = get_context("fork").Process(target=_test, args=(self._folder, mutation, kernels))
         process.start()
         process.join(PATIENCE)
         if process.exitcode is None:
             os.killpg(process.pid or 0, signal.SIGKILL)
             process.join()
             return "timeout"
-        return "killed" if process.exitcode else "survived"
+        return {0: "survived", UNUSED: "not imported"}.get(process.exitcode, "killed")
+
+    def _keep_kernels(self, digest: str) -> None:
+        """Forget all compiled kernels if they are not of this digest, as numba does not know which call which."""
+        kernels, mark = self._folder / "kernels", self._folder / "kernels.sha256"
+        if not mark.exists() or mark.read_text(encoding="utf-8") != digest:
+            shutil.rmtree(kernels, ignore_errors=True)
+            mark.write_text(digest, encoding="utf-8")
+        kernels.mkdir(exist_ok=True)
 
 
-def _test(folder: Path, tests: Sequence[str], kernels: Path) -> None:
-    """Run ``tests`` in the ``folder`` until one fails, in a process of their own, and exit by their result."""
+def _test(folder: Path, mutation: Mutation, kernels: Path) -> None:
+    """Run the tests of a mutation in the ``folder`` until one fails, and exit by their result."""
     import numba
     import pytest
 
@@ -164,31 +200,33 @@ def _test(folder: Path, tests: Sequence[str], kernels: Path) -> None:
     numba.config.CACHE_DIR = str(kernels)
     sys.path.insert(0, str(folder / "src"))
     options = "-qx", "--tb=line", "-p", "no:cacheprovider", "-m", "not validation"
-    code = pytest.main([*options, *(f"tests/{test}" for test in tests)])
+    code = int(pytest.main([*options, *(f"tests/{test}" for test in mutation.tests)]))
+    module = sys.modules.get("rigidfluid." + mutation.file.removesuffix(".py").replace("/", "."))
+    if code == 0 and (module is None or module.__file__ != str(folder / SOURCES / mutation.file)):
+        code = UNUSED
     sys.stdout.flush()
-    os._exit(int(code))
+    os._exit(code)
 
 
-def refuse_useless_tests(workshop: Workshop, chosen: Sequence[Mutation]) -> None:
-    """Raise MutationError where tests do not pass without a mutation, or pass without the file that it is in."""
-    for tests in dict.fromkeys(mutation.tests for mutation in chosen):
-        if workshop.verdict(tests) != "survived":
-            raise MutationError(f"without a mutation fail {', '.join(tests)}:\n{workshop.output}")
-    for file, tests in dict.fromkeys((mutation.file, mutation.tests) for mutation in chosen):
-        if workshop.verdict(tests, file, "raise ImportError\n") == "survived":
-            raise MutationError(f"{file} is imported by none of {', '.join(tests)}")
-
-
-def outcomes(workshop: Workshop, chosen: Iterable[Mutation]) -> Iterator[Outcome]:
+def outcomes(workshop: Workshop, chosen: Sequence[Mutation]) -> Iterator[Outcome]:
     """Test all mutations, one after the other."""
     for mutation in chosen:
-        before = _cpu_of_children()
-        verdict = workshop.verdict(mutation.tests, mutation.file, mutation.applied(workshop.source(mutation.file)))
-        yield Outcome(mutation, verdict, _cpu_of_children() - before)
+        mutation.applied(workshop.source(mutation.file))
+    for mutation in chosen:
+        yield workshop.outcome(mutation)
 
 
-def page(found: Sequence[Outcome], seconds: float, commit: str) -> str:
-    """Page of all outcomes, after so many CPU ``seconds`` for everything."""
+def _digest(files: Iterable[Path]) -> str:
+    """Digest of the names and contents of files."""
+    whole = hashlib.sha256()
+    for path in files:
+        whole.update(str(path).encode() + b"\0" + path.read_bytes())
+    return whole.hexdigest()
+
+
+def page(found: Sequence[Outcome], commit: str) -> str:
+    """Page of all outcomes."""
+    seconds = sum(outcome.seconds for outcome in found)
     verdicts = Counter(outcome.verdict for outcome in found)
     seen = len(found) - verdicts["survived"]
     late = f", {verdicts['timeout']} of them since the tests took more than {PATIENCE:g} s" if verdicts["timeout"] else ""
@@ -248,19 +286,16 @@ def main() -> int:
     chosen = [one for one in mutations() if given.only in one.file or given.only in one.text]
     os.environ |= dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
     os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
-    with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
-        workshop, found = Workshop(Path(folder)), list[Outcome]()
-        for mutation in chosen:
-            mutation.applied(workshop.source(mutation.file))
-        refuse_useless_tests(workshop, chosen)
-        for outcome in outcomes(workshop, chosen):
-            found.append(outcome)
-            one = outcome.mutation
-            print(f"{outcome.verdict:8s} {outcome.seconds:6.1f} s  {one.file}: {one.text!r} -> {one.becomes!r}", flush=True)
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    found = []
+    for outcome in outcomes(Workshop(), chosen):
+        found.append(outcome)
+        one = outcome.mutation
+        print(f"{outcome.verdict:8s} {outcome.seconds:6.1f} s  {one.file}: {one.text!r} -> {one.becomes!r}", flush=True)
     seen = sum(outcome.verdict != "survived" for outcome in found)
-    print(f"{seen} of {len(found)} killed in {_cpu_of_children() / 60.0:.1f} CPU minutes")
+    print(f"{seen} of {len(found)} killed, in {sum(outcome.seconds for outcome in found) / 60.0:.1f} CPU minutes")
     if given.page:
-        given.page.write_text(page(found, _cpu_of_children(), _commit()), encoding="utf-8")
+        given.page.write_text(page(found, _commit()), encoding="utf-8")
     return int(seen < WANTED * len(found))
 
 
