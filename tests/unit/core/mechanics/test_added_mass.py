@@ -10,7 +10,6 @@ from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
 from rigidfluid.core.geometry.facets import Facets
-
 from rigidfluid.core.mechanics.added_mass import added_mass
 
 

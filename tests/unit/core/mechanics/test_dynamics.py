@@ -19,7 +19,10 @@ def test_a_prescribed_body_goes_as_it_is_told_and_takes_no_push(dimension: int) 
     """By the velocity in mid-step along the way, and that of the time at its end; the other one is free."""
     pose, rate = placed(2, dimension), np.random.default_rng(1).normal(size=(2, 3 if dimension == 2 else 6))
     held = np.array([True, False])
-    given = (lambda time: (1.0 + 2.0 * time) * rate)
+
+    def given(time: float) -> FloatArray:
+        return np.asarray((1.0 + 2.0 * time) * rate)
+
     own = *masses(2, dimension), np.zeros((2, dimension)), held
     body = DryDynamics(pose, split(rate, dimension), *own, given)
     body.apply_impulse(np.ones_like(rate))

@@ -16,7 +16,13 @@ from rigidfluid.core.mechanics.component_dynamics import ComponentDynamics
 from rigidfluid.core.mechanics.dynamics import DryDynamics
 from rigidfluid.core.mechanics.kinematics import carried_sum
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
-from rigidfluid.core.mechanics.motions import applied_wrench, body_accelerations, newly_applied, round_motions, twist_arms
+from rigidfluid.core.mechanics.motions import (
+    applied_wrench,
+    body_accelerations,
+    newly_applied,
+    round_motions,
+    twist_arms,
+)
 from rigidfluid.core.mechanics.rigid import kinetic_energy, moment, rotate, rotation_between, turned
 from rigidfluid.core.mechanics.rotational_factors import rotational_factors
 from rigidfluid.core.mechanics.time_scheme import momentum
