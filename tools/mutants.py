@@ -193,7 +193,7 @@ def _test(folder: Path, mutation: Mutation, kernels: Path) -> None:
 
     os.setsid()
     os.chdir(folder)
-    with open("output", "w", encoding="utf-8") as output:
+    with Path("output").open("w", encoding="utf-8") as output:
         for stream in (1, 2):
             os.dup2(output.fileno(), stream)
     os.environ |= {"PYTHONPATH": str(folder / "src"), "NUMBA_CACHE_DIR": str(kernels)}
@@ -229,7 +229,7 @@ def page(found: Sequence[Outcome], commit: str) -> str:
     seconds = sum(outcome.seconds for outcome in found)
     verdicts = Counter(outcome.verdict for outcome in found)
     seen = len(found) - verdicts["survived"]
-    late = f", {verdicts['timeout']} of them since the tests took more than {PATIENCE:g} s" if verdicts["timeout"] else ""
+    late = f", {verdicts['timeout']} of them as tests took more than {PATIENCE:g} s" if verdicts["timeout"] else ""
     lines = [
         "# Mutations",
         "",
@@ -272,9 +272,9 @@ def _cpu_of_children() -> float:
 def _commit() -> str:
     """Commit of the checkout, and whether anything differs from it."""
     git = ["git", "-C", str(ROOT)]
-    head = subprocess.run([*git, "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=True)
-    changed = subprocess.run([*git, "status", "--porcelain", "src", "tests"], capture_output=True, text=True, check=True)
-    return head.stdout.strip() + (" with changes" if changed.stdout else "")
+    commands = [*git, "rev-parse", "--short", "HEAD"], [*git, "status", "--porcelain", "src", "tests"]
+    head, changed = (subprocess.run(one, capture_output=True, text=True, check=True).stdout for one in commands)
+    return head.strip() + (" with changes" if changed else "")
 
 
 def main() -> int:

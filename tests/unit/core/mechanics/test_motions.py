@@ -86,7 +86,7 @@ def test_bodies_are_accelerated_as_their_velocities_change(dimension: int) -> No
 
 @DIMENSIONS
 def test_strokes_accelerate_bodies_by_the_mean_over_the_time(dimension: int) -> None:
-    motions, bodies = carried(dimension)
+    motions, _ = carried(dimension)
     still = split(np.zeros_like(flat(motions.twist)), dimension)
     motions.twist = still
     none = nothing(motions.pose)
@@ -100,7 +100,8 @@ def test_strokes_accelerate_bodies_by_the_mean_over_the_time(dimension: int) -> 
         motions=motions, mass=np.ones(5), added_mass=np.zeros((5, dimension, dimension)), dimension=dimension
     )
     found = body_accelerations(system, state, TIME, 0.05)
-    before, after = (flat(motions.kinematics(motions.pose, time).component_twist(still)) for time in (TIME, TIME + 0.05))
+    times = TIME, TIME + 0.05
+    before, after = (flat(motions.kinematics(motions.pose, time).component_twist(still)) for time in times)
     np.testing.assert_allclose(found, (after - before) / 0.05, atol=1e-9)
     assert np.abs(found).max() > 0.1
 
@@ -109,7 +110,8 @@ def test_strokes_accelerate_bodies_by_the_mean_over_the_time(dimension: int) -> 
 def test_momenta_and_energy_of_motions_are_those_of_their_bodies(dimension: int) -> None:
     motions, _ = carried(dimension)
     mass, inertia = motions._own_mass, motions._own_inertia
-    pose, twist = motions.poses(motions.pose, TIME), motions.kinematics(motions.pose, TIME).component_twist(motions.twist)
+    pose = motions.poses(motions.pose, TIME)
+    twist = motions.kinematics(motions.pose, TIME).component_twist(motions.twist)
     centre = motions.pose.position[motions.carrier]
     each = carried_sum(motions.carrier, momenta(mass, inertia, pose, twist, centre), 3)
     own = momentum(motions.mass, motions.inertia(TIME), motions.pose, motions.twist)
@@ -159,7 +161,7 @@ def test_the_farthest_point_of_a_motion_gives_its_arm(dimension: int) -> None:
 @DIMENSIONS
 def test_a_wrench_from_outside_turns_motions_by_its_mean_lever(dimension: int) -> None:
     """Of a stroke, whose bodies are elsewhere at the end of the step."""
-    motions, bodies = carried(dimension)
+    motions, _ = carried(dimension)
     force, now = wrench_on(5, dimension), split(np.zeros_like(flat(motions.twist)), dimension)
     twist = motions.kinematics(motions.pose, TIME).component_twist(now)
     state: Any = SimpleNamespace(
