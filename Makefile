@@ -12,7 +12,7 @@ WITH_PLUGINS := tests/unit/core/run/test_resumption.py tests/unit/core/run/test_
 WITH_DOLFINX := tests/contract/test_fluid_backends.py tests/unit/backends/test_dolfinx.py \
 	tests/unit/benchmarks/test_backends_benchmark.py tests/unit/benchmarks/test_parallel_benchmark.py tests/mpi
 
-.PHONY: run test test-long test-plugins test-dolfinx install lint validate stale bench clean
+.PHONY: run test test-long test-plugins test-dolfinx install lint mutants validate stale bench clean
 
 run: install
 	$(BIN)/rigidfluid run scenes/falling_disk.toml
@@ -45,6 +45,9 @@ stale: .venv/.installed
 lint: .venv/.installed-dev
 	$(BIN)/ruff check
 	$(BIN)/mypy
+
+mutants: .venv/.installed-test
+	$(BIN)/python tools/mutants.py --page docs/mutants.md
 
 bench: .venv/.installed-bench .venv/.installed-plugins
 	$(BIN)/python benchmarks/step.py --page docs/validation/step.md

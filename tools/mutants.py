@@ -5,8 +5,8 @@
 Mutations are in `mutants.toml`: files, texts in them, what each becomes, and the tests that should fail then. Sources
 and tests are copied to out/mutants; the checkout is left alone. For each file the tests must first pass as it is, and
 must have imported it. Then each mutation is tested until a first test fails; one with which they take far too long is
-killed, too. A file with compiled kernels is tested with all of them compiled anew. What is known of the same sources
-and tests is not tested again, so that a stopped run goes on. Exits with 1 where fewer than 95 % are killed.
+killed, too. Files of compiled kernels are tested without the compiler. What is known of the same sources and tests is
+not tested again, so that a stopped run goes on. Exits with 1 where fewer than 95 % are killed.
 """
 
 from __future__ import annotations
@@ -21,7 +21,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import tomllib
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
@@ -113,7 +112,8 @@ class Workshop:
             if path.is_file():
                 shutil.copy2(path, folder)
         sources = sorted((folder / SOURCES).rglob("*.py"))
-        self._keep_kernels(_digest(path for path in sources if KERNEL in path.read_text(encoding="utf-8")))
+        kernels = (path for path in sources if KERNEL in path.read_text(encoding="utf-8"))
+        self._kernels = folder / "kernels" / _digest(kernels)  # numba does not see that one that is called has changed
         shared = (path for name in SHARED for path in sorted((folder / name).rglob("*")) if path.is_file())
         self._common = _digest([*sources, *shared])
         (folder / "outcomes").mkdir(exist_ok=True)
@@ -152,7 +152,7 @@ class Workshop:
     def _verdict(self, mutation: Mutation) -> str:
         """Verdict of the tests of a mutation; its file has a time of which no compiled file is."""
         if not mutation.text:
-            return self._run(mutation, self._folder / "kernels")
+            return self._run(mutation)
         text, path = mutation.applied(self.source(mutation.file)), self._folder / SOURCES / mutation.file
         kept = path.with_suffix(".kept")
         path.rename(kept)
@@ -160,15 +160,12 @@ class Workshop:
         self._stamp += 10.0
         os.utime(path, (self._stamp, self._stamp))
         try:
-            if KERNEL not in text:
-                return self._run(mutation, self._folder / "kernels")
-            with tempfile.TemporaryDirectory() as empty:
-                return self._run(mutation, Path(empty))
+            return self._run(mutation)
         finally:
             kept.replace(path)
 
-    def _run(self, mutation: Mutation, kernels: Path) -> str:
-        process = get_context("fork").Process(target=_test, args=(self._folder, mutation, kernels))
+    def _run(self, mutation: Mutation) -> str:
+        process = get_context("fork").Process(target=_test, args=(self._folder, mutation, self._kernels))
         process.start()
         process.join(PATIENCE)
         if process.exitcode is None:
@@ -177,17 +174,12 @@ class Workshop:
             return "timeout"
         return {0: "survived", UNUSED: "not imported"}.get(process.exitcode, "killed")
 
-    def _keep_kernels(self, digest: str) -> None:
-        """Forget all compiled kernels if they are not of this digest, as numba does not know which call which."""
-        kernels, mark = self._folder / "kernels", self._folder / "kernels.sha256"
-        if not mark.exists() or mark.read_text(encoding="utf-8") != digest:
-            shutil.rmtree(kernels, ignore_errors=True)
-            mark.write_text(digest, encoding="utf-8")
-        kernels.mkdir(exist_ok=True)
-
 
 def _test(folder: Path, mutation: Mutation, kernels: Path) -> None:
-    """Run the tests of a mutation in the ``folder`` until one fails, and exit by their result."""
+    """Run the tests of a mutation in the ``folder`` until one fails, and exit by their result.
+
+    A file of compiled kernels is not compiled: numba does not know which compiled ones call it.
+    """
     import numba
     import pytest
 
@@ -196,8 +188,9 @@ def _test(folder: Path, mutation: Mutation, kernels: Path) -> None:
     with Path("output").open("w", encoding="utf-8") as output:
         for stream in (1, 2):
             os.dup2(output.fileno(), stream)
-    os.environ |= {"PYTHONPATH": str(folder / "src"), "NUMBA_CACHE_DIR": str(kernels)}
+    os.environ["PYTHONPATH"] = str(folder / "src")
     numba.config.CACHE_DIR = str(kernels)
+    numba.config.DISABLE_JIT = KERNEL in (folder / SOURCES / mutation.file).read_text(encoding="utf-8")
     sys.path.insert(0, str(folder / "src"))
     options = "-qx", "--tb=line", "-p", "no:cacheprovider", "-m", "not validation"
     code = int(pytest.main([*options, *(f"tests/{test}" for test in mutation.tests)]))

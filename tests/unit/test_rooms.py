@@ -132,5 +132,5 @@ def test_no_room_is_more_than_twelve_hundredths_of_all() -> None:
 def test_a_folder_of_unit_tests_mirrors_a_room_or_a_folder_beside_the_sources() -> None:
     tests = ROOT / "tests" / "unit"
     folders = {path.parent.relative_to(tests) for path in tests.rglob("test_*.py")}
-    beside = {Path("docs"), Path("benchmarks"), Path("support")}
+    beside = {Path("docs"), Path("benchmarks"), Path("support"), Path("tools")}
     assert {str(folder) for folder in folders - beside if not (SOURCE / folder).is_dir()} == set()

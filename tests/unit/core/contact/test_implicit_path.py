@@ -30,15 +30,19 @@ def simulation(*bodies: dict[str, Any], step: float, end: float, **contact: Any)
 
 
 def test_dampers_take_what_they_do_in_all_parts_of_a_step_and_contacts_give_all_their_impulse() -> None:
-    """The ball comes to the wall, and from it, in one step."""
-    given = {"law": "spring-dashpot", "stiffness": 300.0, "restitution": 0.5}
-    run = simulation(ball([0.15, 0.4], [-1.0, 0.0]), step=0.1, end=0.1, **given)
+    """The ball comes to the wall, rubs on it, and goes from it, in one step."""
+    given = {"law": "spring-dashpot", "stiffness": 300.0, "restitution": 0.5, "friction": 0.3}
+    run = simulation(ball([0.15, 0.4], [-1.0, 0.0], angular_velocity=9.0), step=0.1, end=0.1, **given)
     assert spring_parts(run.system, 0.1) == 3
     run.go()
-    state, speed = run.state, run.state.twist.velocity[0, 0]
+    state, inertia = run.state, 0.5 * MASS * 0.1**2
+    (speed, along), spin = state.twist.velocity[0], state.twist.angular_velocity[0, 0]
     assert 0.0 < speed < 0.99
+    assert spin < 8.9
     assert state.count == 1
-    assert state.ledger.contact_loss == pytest.approx(0.5 * MASS * (1.0 - speed**2), rel=1e-6)
+    lost = 0.5 * MASS * (1.0 - speed**2 - along**2) + 0.5 * inertia * (9.0**2 - spin**2)
+    assert state.ledger.contact_loss == pytest.approx(lost, rel=1e-6)
+    assert 0.1 * state.contact_wrench.torque[0, 0] == pytest.approx(inertia * (spin - 9.0))
     assert 0.1 * state.contact_wrench.force[0, 0] == pytest.approx(MASS * (1.0 + speed))
     assert 0.1 * state.motions.contact.force[0, 0] == pytest.approx(MASS * (1.0 + speed))
 
