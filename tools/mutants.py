@@ -47,8 +47,11 @@ PRELOADED = (
 WANTED = 0.95
 """Share of mutations that must be killed."""
 
-PATIENCE = 600.0
-"""Seconds after which tests are ended."""
+PATIENCE = 60
+"""CPU seconds after which tests are ended."""
+
+ASLEEP = 30
+"""Times of that which pass on the clock before tests are ended that do nothing, or are given little of a machine."""
 
 KERNEL = "njit"
 """Word in files with compiled kernels."""
@@ -167,12 +170,13 @@ class Workshop:
     def _run(self, mutation: Mutation) -> str:
         process = get_context("fork").Process(target=_test, args=(self._folder, mutation, self._kernels))
         process.start()
-        process.join(PATIENCE)
+        process.join(ASLEEP * PATIENCE)
         if process.exitcode is None:
             os.killpg(process.pid or 0, signal.SIGKILL)
             process.join()
             return "timeout"
-        return {0: "survived", UNUSED: "not imported"}.get(process.exitcode, "killed")
+        known = {0: "survived", UNUSED: "not imported", -signal.SIGXCPU: "timeout"}
+        return known.get(process.exitcode, "killed")
 
 
 def _test(folder: Path, mutation: Mutation, kernels: Path) -> None:
@@ -184,6 +188,7 @@ def _test(folder: Path, mutation: Mutation, kernels: Path) -> None:
     import pytest
 
     os.setsid()
+    resource.setrlimit(resource.RLIMIT_CPU, (PATIENCE, PATIENCE + 10))
     os.chdir(folder)
     with Path("output").open("w", encoding="utf-8") as output:
         for stream in (1, 2):
@@ -222,7 +227,7 @@ def page(found: Sequence[Outcome], commit: str) -> str:
     seconds = sum(outcome.seconds for outcome in found)
     verdicts = Counter(outcome.verdict for outcome in found)
     seen = len(found) - verdicts["survived"]
-    late = f", {verdicts['timeout']} of them as tests took more than {PATIENCE:g} s" if verdicts["timeout"] else ""
+    late = f", {verdicts['timeout']} of them as tests took {PATIENCE} s of CPU time" if verdicts["timeout"] else ""
     lines = [
         "# Mutations",
         "",

@@ -102,7 +102,7 @@ def test_outcomes_are_known_until_sources_or_tests_change(mutants: ModuleType, p
 def test_tests_without_an_end_are_killed(
     mutants: ModuleType, project: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(mutants, "PATIENCE", 5.0)
+    monkeypatch.setattr(mutants, "PATIENCE", 5)
     loop = "def total(a, b):\n    while b <= 0:\n        pass"
     found = outcome(mutants, project, loop, "test_sums.py", text="def total(a, b):")
     assert found.verdict == "timeout"
@@ -113,7 +113,7 @@ def test_the_page_has_totals_and_survivors(mutants: ModuleType) -> None:
     reasoned = mutants.Mutation("b.py", "w", "", (), "it is the same")
     found = [mutants.Outcome(one, "survived", 1.0), mutants.Outcome(other, "timeout", 89.0)]
     page = mutants.page([*found, mutants.Outcome(reasoned, "survived", 30.0)], "abc")
-    assert "Of 3 mutations in 2 files 1 are killed, 1 of them as tests took more than 600 s: 33.3 %" in page
+    assert "Of 3 mutations in 2 files 1 are killed, 1 of them as tests took 60 s of CPU time: 33.3 %" in page
     assert "at commit abc, in 2 CPU minutes" in page
     assert "| a.py | `x \\| y` | `0` | a gap |" in page
     assert "| b.py | `w` | nothing | it is the same |" in page

@@ -47,7 +47,8 @@ def angular_momentum(motions: CarriedBodies, place: Pose, twist: Twist, time: fl
     """Sum over both bodies, about the common centre of mass."""
     pose, each = motions.poses(place, time), motions.kinematics(place, time).component_twist(twist)
     own = motions._own_mass, motions._own_inertia
-    return np.asarray(momenta(*own, pose, each, place.position[motions.carrier])[:, place.position.shape[1] :].sum(axis=0))
+    both = momenta(*own, pose, each, place.position[motions.carrier])
+    return np.asarray(both[:, place.position.shape[1] :].sum(axis=0))
 
 
 @DIMENSIONS
