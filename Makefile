@@ -18,7 +18,7 @@ WITH_LOWEST := $(addprefix tests/unit/,test_cli.py test_registry.py core/case co
 	domains/test_cad.py domains/test_mesh_domain.py marching/test_marching.py taylor_hood/test_factorization.py post/reports) \
 	tests/contract/test_bodies.py tests/contract/test_force_laws.py
 
-.PHONY: run test test-lowest test-long test-plugins test-dolfinx install lint pages validate nightly stale bench lock clean
+.PHONY: run test test-lowest test-long test-plugins test-dolfinx install lint mutants pages validate nightly stale bench lock clean
 
 run: install
 	$(BIN)/rigidfluid run scenes/falling_disk.toml
@@ -64,6 +64,9 @@ stale: .venv/.installed-plugins
 lint: .venv/.installed-dev
 	$(BIN)/ruff check
 	$(BIN)/mypy
+
+mutants: .venv/.installed-test
+	$(BIN)/python tools/mutants.py --page docs/mutants.md
 
 bench: .venv/.installed-bench .venv/.installed-plugins
 	$(BIN)/python docs/make_validation.py step work_precision contact_step

@@ -4,6 +4,7 @@ from scipy.spatial.transform import Rotation
 
 from rigidfluid.core.mechanics.rigid import (
     angle_between,
+    compose,
     cross,
     lab_inertia,
     moment,
@@ -31,6 +32,13 @@ def test_rotate_composes_in_the_lab_frame() -> None:
     expected = Rotation.from_rotvec(VECTORS) * Rotation.from_quat(QUATERNIONS, scalar_first=True)
     found = rotation_matrices(rotate(QUATERNIONS, VECTORS))
     np.testing.assert_allclose(found, expected.as_matrix(), rtol=0, atol=1e-14)
+
+
+def test_a_turn_in_a_turned_frame_comes_first() -> None:
+    first, second = (rotate(np.eye(1, 4), np.array([turn])) for turn in ([0.3, -0.5, 0.7], [1.1, 0.2, -0.4]))
+    whole = rotation_matrices(first) @ rotation_matrices(second)
+    np.testing.assert_allclose(rotation_matrices(compose(first, second)), whole, atol=1e-15)
+    np.testing.assert_allclose(compose(np.array([[0.3]]), np.array([[0.5]])), [[0.8]])
 
 
 @pytest.mark.parametrize("size", [0.0, 1e-300, 1e-12])

@@ -8,6 +8,7 @@ from rigidfluid.core.mechanics.time_scheme import (
     newton_euler,
     path_error_weight,
     predict_pose,
+    start_pose,
 )
 from rigidfluid.core.model.types import Pose, Twist, Wrench
 
@@ -76,6 +77,14 @@ def test_pose_is_exact_for_linear_twists(dimension: int, previous: float) -> Non
     angle = 2 * step + 1.5 * step**2
     expected = [[angle]] if dimension == 2 else [[np.cos(angle / 2), np.sin(angle / 2), 0.0, 0.0]]
     np.testing.assert_allclose(pose.orientation, expected, rtol=0, atol=1e-15)
+
+
+def test_the_pose_of_a_first_step_is_exact_for_twists_that_change_linearly_in_it() -> None:
+    """From U = (1, 2) and ω = 3 to (3, -4) and 9 in .1."""
+    start, end = (Twist(np.array([row[:2]]), np.array([row[2:]])) for row in ([1.0, 2.0, 3.0], [3.0, -4.0, 9.0]))
+    pose = start_pose(Pose(np.zeros((1, 2)), np.zeros((1, 1))), start, end, 0.1)
+    np.testing.assert_allclose(pose.position, [[0.2, -0.1]])
+    np.testing.assert_allclose(pose.orientation, [[0.6]])
 
 
 def test_first_pose_is_forward_euler() -> None:

@@ -77,3 +77,18 @@ def test_a_turned_body_has_the_same_energy():
         for q, w in ((still, spin), (turned, spin @ rotation_matrices(turned)[0].T))
     ]
     assert both[0] == pytest.approx(both[1]) == pytest.approx(0.5 * (3 + 1 + 8 + 27))
+
+
+def test_every_rate_is_in_its_entry_and_every_entry_in_the_balance() -> None:
+    """Each by the mean of both ends of a step of .5; what is lost and stored is what came in."""
+    before = Power(boundary=1.0, control=2.0, dissipation=3.0, damping=4.0, grad_div=5.0, source=6.0)
+    after = Power(2.0, 4.0, 7.0, dissipation_midway=5.0, damping=8.0, grad_div=9.0, source=12.0)
+    work = Work(gravity=0.25, control=0.5, contact_loss=0.75, path_friction=9.0, drag_loss=1.25)
+    ledger = Ledger(10.0, 1.0, 11.0, since_start=2.0, power=before).after(0.5, after, work, 10.5, 1.5)
+    assert (ledger.gravity, ledger.boundary, ledger.control, ledger.body_force) == (0.25, 0.75, 2.0, 4.5)
+    assert (ledger.dissipation, ledger.grad_div_loss, ledger.contact_loss) == (3.75, 3.5, 3.75)
+    assert ledger.since_start == 2.5
+    came, gone = 0.25 + 0.75 + 2.0 + 4.5, 3.75 + 3.5 + 3.75
+    assert ledger.residual == pytest.approx(came - gone - 1.0)
+    assert ledger.after_transfer(0.5).residual == pytest.approx(ledger.residual)
+    assert ledger.put_in == 11.0 + came

@@ -35,6 +35,21 @@ def test_a_rotation_in_3d_is_a_vector():
     np.testing.assert_allclose(cycles(table, {"it": 1.0})["it"]["rotation"], [[0.0, 0.0, 0.5 * np.pi]])
 
 
+def test_cycles_that_end_between_two_steps_or_by_rounding_are_counted_and_others_rows_are_not():
+    """By a third of .3 each, about an axis at an even rate; a half of the way between two turns is their mean."""
+    half = np.array([0.0, 0.1, 0.2, 0.3])
+    turns = [[np.cos(angle), 0.0, 0.0, np.sin(angle)] for angle in 5.0 * half]
+    table = history(3, [[x, 0.0, 0.0] for x in half], turns, half)
+    (found,) = cycles(table, {"it": 0.1}).values()
+    np.testing.assert_allclose(found["rotation"], [[0.0, 0.0, 1.0]] * 3)
+    rows = [list(row) for row in zip(*table.table("bodies", columns(3)["bodies"]).values(), strict=True)]
+    away = [[*row[:2], "other", *[9.0] * 3, 1.0, *[0.0] * (len(row) - 7)] for row in rows]
+    both = History(3, {"bodies": [tuple(row) for pair in zip(rows, away, strict=True) for row in pair]})
+    assert cycles(both, {"it": 0.1})["it"] == found
+    coarse = history(3, [[0.0] * 3] * 2, [turns[0], turns[2]], [0.0, 0.2])
+    np.testing.assert_allclose(cycles(coarse, {"it": 0.1})["it"]["rotation"], [[0.0, 0.0, 1.0]] * 2)
+
+
 def test_summary_and_report_have_the_cycles_of_a_run(tmp_path):
     head = OUT | {"period": 0.1}
     run = rigidfluid.run(scene(WAG | {"period": 0.4}, head, end=0.5, velocity=[0.5, 0.0]), tmp_path)

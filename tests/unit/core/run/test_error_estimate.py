@@ -72,6 +72,14 @@ def test_what_an_impact_changes_is_no_error_and_stays_visible(run):
     assert estimated(run, 0.1, 0.1, jump=30.0).error == pytest.approx(hit.with_contacts)
 
 
+def test_a_contact_that_pushes_on_as_before_explains_no_jump(run):
+    """Of the body that it pushes on, with a force that could make twice the jump."""
+    force = 60.0 * run.system.mass[1] / 0.1
+    before, after = at(run, 0.9, 0.1, 0.1, force=force), at(run, 1.0, 0.1, 0.1, force=force, jump=30.0)
+    found = estimate_error(run.system, 1.0, before, after)
+    assert found.error == pytest.approx(estimated(run, 0.1, 0.1, jump=30.0).error)
+
+
 def test_what_impacts_may_do_to_the_fluid_is_no_error_of_it_either(run, monkeypatch):
     """They give their energy to the bodies' own masses at most."""
     mass, jump, smooth = run.system.mass[1], 30.0, 1e-2

@@ -1,0 +1,123 @@
+"""What a scheme expects of a step in a fluid, from what is known of the one before: equations of motion say it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from linked_bodies import masses, placed, split
+
+from rigidfluid.core.contact.body_step import undisturbed
+from rigidfluid.core.coupling.fluid_scheme import _velocities, expected_load_of, load_before
+from rigidfluid.core.coupling.navier_stokes_scheme import NavierStokesScheme
+from rigidfluid.core.coupling.stokes_scheme import StokesScheme
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.mechanics.single_bodies import SingleBodies
+from rigidfluid.core.model.reduced_model import Coupling, Evaluation, ReducedModel
+from rigidfluid.core.model.types import Wrench
+
+STEP, VELOCITIES, NONE = 0.1, np.array([0, 1, 4]), np.zeros(0)
+"""The model has the velocities of the first of two bodies, and one of the second."""
+
+
+def model(decay: float = 0.0) -> ReducedModel:
+    """Modes at random; friction of twice, three and four times ``decay`` over the mass."""
+    modes = np.random.default_rng(3).normal(size=(3, 3))
+    return ReducedModel(VELOCITIES, modes, decay * np.array([2.0, 3.0, 4.0]), Evaluation(NONE, NONE), False)
+
+
+def random(seed: int) -> FloatArray:
+    """Rows of two bodies in the plane."""
+    return np.random.default_rng(seed).normal(size=(2, 3))
+
+
+def wrench(rows: FloatArray) -> Wrench:
+    return Wrench(rows[:, :2], rows[:, 2:])
+
+
+def system(**keys: Any) -> Any:
+    pose = placed(2, 2)
+    rest = split(np.zeros((2, 3)), 2)
+    motions = SingleBodies(*masses(2, 2), np.zeros(2, dtype=bool), pose, rest)
+    own = {"weight": np.zeros((2, 2)), "inertia": masses(2, 2)[1]}
+    return SimpleNamespace(motions=motions, dimension=2, **own | keys)
+
+
+def state(change: FloatArray, contact: FloatArray, link: FloatArray, applied: tuple[FloatArray, FloatArray]) -> Any:
+    """After a step in which twists have changed so, with mean loads of contacts and joints in it; ``applied`` from
+    outside in the step and from now on."""
+    pose, before = placed(2, 2), random(9)
+    past = SimpleNamespace(twist=split(before, 2), step=STEP, applied=wrench(applied[0]))
+    now, twist = wrench(applied[1]), split(before + change, 2)
+    motions = SimpleNamespace(pose=pose, twist=twist, contact=wrench(contact), hydrodynamic=wrench(random(11)))
+    link_load = SimpleNamespace(wrench=link)
+    return SimpleNamespace(
+        past=past, past_step=STEP, motions=motions, pose=pose, twist=twist, applied=now, link=link_load, coupling=None
+    )
+
+
+def test_the_load_that_is_expected_has_moved_the_bodies_in_the_step_before() -> None:
+    """M ΔU = (Φ + contacts + joints) Δt; what is applied anew is added."""
+    known, load, contact, link = model(), np.array([1.0, -2.0, 3.0]), random(1), random(2)
+    pushed = (contact + link).ravel()[VELOCITIES]
+    change = np.zeros((2, 3))
+    change.flat[VELOCITIES] = STEP * known.inverse_mass @ (load + pushed)
+    given = state(change, contact, link, (random(5), random(6)))
+    found = expected_load_of(system(), given, known)
+    np.testing.assert_allclose(found, load + (random(6) - random(5)).ravel()[VELOCITIES])
+
+
+def test_drag_that_has_slowed_a_body_is_no_load_of_the_next_step() -> None:
+    """Φ counts from the velocity at the start of a step, R ΔU less than in the one before."""
+    known, change = model(0.7), random(4)
+    given = state(change, random(1), random(2), (random(5), random(6)))
+    load = np.array([1.0, -2.0, 3.0])
+    given.coupling = Coupling(known, load, load, np.zeros(3))
+    inverse = np.linalg.inv(known.modes)
+    friction = inverse.T @ np.diag(known.decay) @ inverse
+    expected = load - friction @ change.ravel()[VELOCITIES] + (random(6) - random(5)).ravel()[VELOCITIES]
+    np.testing.assert_allclose(load_before(system(), given, known), expected)
+    np.testing.assert_allclose(StokesScheme(system())._expected_loads(given, known), [expected, expected])
+
+
+def test_without_inertia_what_was_missed_is_what_the_correction_adds() -> None:
+    known, missed, d0 = model(0.7), np.array([0.3, -0.1, 0.2]), 15.0
+    step: Any = SimpleNamespace(derivative=np.array([d0, -d0, 0.0]))
+    load = StokesScheme(system())._correction(known, step, missed)
+    np.testing.assert_allclose(known.response(d0, load) / d0, missed)
+
+
+def test_friction_of_a_path_without_inertia_is_known_for_certain() -> None:
+    path = replace(undisturbed(system(), placed(2, 2), split(random(1), 2), 0.1), friction=0.25)
+    found = StokesScheme(system())._with_friction(path)
+    assert (found.friction, found.drag_loss) == (0.0, 0.25)
+
+
+def test_contacts_are_unsteady_where_their_impulse_is_another_than_that_of_as_long_a_step() -> None:
+    around = system(bodies=[SimpleNamespace(bounding_radius=0.2, radius=None)] * 2)
+    scheme, given = NavierStokesScheme(around), state(random(4), random(1), random(2), (random(5), random(6)))
+
+    def path(impulse: FloatArray) -> Any:
+        return SimpleNamespace(coupling=True, motions=SimpleNamespace(contact=wrench(impulse)))
+
+    assert not scheme.is_unsteady(given, path(0.05 * random(1)), 0.05)
+    assert not scheme.is_unsteady(given, path(1.009 * 0.05 * random(1)), 0.05)
+    assert scheme.is_unsteady(given, path(1.02 * 0.05 * random(1)), 0.05)
+
+
+def test_contacts_without_dampers_turn_no_ball() -> None:
+    """And move what they touch, or what joints link."""
+    bodies = [SimpleNamespace(radius=radius, bounding_radius=0.2) for radius in (0.2, None)]
+    near: Any = SimpleNamespace(body_a=np.array([0]), body_b=np.array([1]))
+
+    def found(dissipative: bool, linked: list[bool]) -> list[int]:
+        law, joints = SimpleNamespace(dissipative=dissipative), SimpleNamespace(linked=np.array(linked))
+        return _velocities(system(bodies=bodies, law=law, joints=joints), near).tolist()
+
+    assert found(False, [False, False]) == [0, 1, 3, 4, 5]
+    assert found(True, [False, False]) == [0, 1, 2, 3, 4, 5]
+    near.body_b = np.array([7])
+    assert found(False, [False, False]) == [0, 1]
+    assert found(False, [True, False]) == [0, 1, 2]
