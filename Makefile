@@ -12,7 +12,7 @@ WITH_PLUGINS := tests/unit/core/run/test_resumption.py tests/unit/core/run/test_
 WITH_DOLFINX := tests/contract/test_fluid_backends.py tests/unit/backends/test_dolfinx.py \
 	tests/unit/benchmarks/test_backends_benchmark.py tests/unit/benchmarks/test_parallel_benchmark.py tests/mpi
 
-.PHONY: run test test-long test-plugins test-dolfinx install lint validate stale bench clean
+.PHONY: run test test-long test-plugins test-dolfinx install lint docs validate stale bench clean
 
 run: install
 	$(BIN)/rigidfluid run scenes/falling_disk.toml
@@ -34,6 +34,10 @@ test-dolfinx:
 	tools/dolfinx make
 	tools/dolfinx run python3 -m pytest -m 'not validation' $(WITH_DOLFINX)
 
+# The documentation site, in site/; a warning, as of a link that leads nowhere, ends it.
+docs: .venv/.installed-docs
+	$(BIN)/python -m sphinx -q -W --keep-going -b html docs site
+
 validate: .venv/.installed-plugins
 	$(BIN)/pytest -m validation
 	cd plugins/rigidfluid-lammps && $(CURDIR)/$(BIN)/python -m pytest -m validation
@@ -53,7 +57,7 @@ bench: .venv/.installed-bench .venv/.installed-plugins
 	$(BIN)/python benchmarks/dry_spheres.py
 
 clean:
-	rm -rf .venv .dolfinx
+	rm -rf .venv .dolfinx site
 
 # A stamp, since a venv that could not be finished leaves its python behind.
 .venv/.created:
