@@ -83,7 +83,11 @@ def documented(name: str, brief: bool) -> Iterator[str]:
     kind = "class" if inspect.isclass(thing) else "function" if inspect.isfunction(thing) else "data"
     yield f".. auto{kind}:: rigidfluid.api.{name}"
     is_table = kind == "class" and issubclass(thing, BaseModel)
-    yield from ["   :no-members:", ""] if brief or is_table else [""]
+    if kind == "class":
+        # A member called `type` is what the type `type` of any parameter would lead to.
+        yield "   :no-members:" if brief or is_table else "   :exclude-members: type"
+        yield from ["   :show-inheritance:"] if thing.__bases__ != (object,) else []
+    yield ""
     if is_table:
         for key, field in thing.model_fields.items():
             yield f"   * ``{field.alias or key}``: {field.description or 'a table'}"

@@ -58,4 +58,4 @@ def first_sentence(scene: Path) -> str:
     if head is None:
         raise ValueError(f"{scene.name} does not begin with a comment that says what it shows")
     text = " ".join(line.removeprefix("#").strip() for line in head[0].splitlines())
-    return re.split(r"(?<=[.:]) (?=Units|After|[A-Z])", text)[0]
+    return re.split(r"(?<=[.:]) (?=cm|scenes|[A-Z])", text)[0]

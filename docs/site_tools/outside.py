@@ -39,4 +39,5 @@ def relinked(link: str, file: Path, docname: str) -> str:
     """Path of a ``link`` in a ``file`` as its page must say it; files that are no pages are there for download."""
     target = (file.parent / link).resolve()
     pages = {(ROOT / outside).resolve(): DOCS / f"{page}.md" for page, outside in OUTSIDE.items()}
+    pages[ROOT / "README.md"] = DOCS / "index.md"
     return os.path.relpath(pages.get(target, target), (DOCS / docname).parent)
