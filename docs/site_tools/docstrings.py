@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+from typing import TYPE_CHECKING
 
-from sphinx.application import Sphinx
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
 
 _CODE = re.compile(r"(``.+?``|`[^`]+`)")
 
@@ -15,9 +17,9 @@ def setup(app: Sphinx) -> dict[str, bool]:
     return {"parallel_read_safe": True}
 
 
-def escape(_app: Sphinx, _what: str, _name: str, _thing: object, _options: object, lines: list[str]) -> None:
+def escape(_app: Sphinx | None, _what: str, _name: str, _thing: object, _options: object, lines: list[str]) -> None:
     """Escape what reStructuredText would take for markup in |r|², u* and x_ outside of code."""
     for number, line in enumerate(lines):
         parts = _CODE.split(line)
-        parts[::2] = [re.sub(r"([|*]|_\b|(?<=\w)_(?=\W|$))", r"\\\1", part) for part in parts[::2]]
+        parts[::2] = [re.sub(r"([|*]|_(?!\w))", r"\\\1", part) for part in parts[::2]]
         lines[number] = "".join(parts)
