@@ -47,6 +47,6 @@ def test_a_page_opens_in_a_browser(page: str) -> None:
 
 @pytest.mark.skipif(BROWSER is None, reason="no Chromium is installed")
 def test_the_search_finds_a_law() -> None:
-    document, complaints = opened("search.html?q=barrier")
-    assert 'href="forces.html' in document
-    assert not complaints
+    """Without a server it has no excerpts, of which the browser complains."""
+    document, _ = opened("search.html?q=barrier")
+    assert 'href="forces.html' in document.partition('id="search-results"')[2]
