@@ -12,8 +12,12 @@ _CODE = re.compile(r"(``.+?``|`[^`]+`)")
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Connect to the reading of docstrings."""
+    """Connect to the reading of docstrings, and show names of types by themselves."""
+    from sphinx.util.inspect import TypeAliasForwardRef
+
     app.connect("autodoc-process-docstring", escape, priority=400)
+    # A name that stands for a type, as FloatArray, within another type: Sphinx shows the object that keeps it.
+    TypeAliasForwardRef.__repr__ = lambda alias: alias.name
     return {"parallel_read_safe": True}
 
 
