@@ -81,8 +81,8 @@ def documented(name: str, brief: bool) -> Iterator[str]:
         yield from [f".. py:data:: rigidfluid.api.{name}", "", f"   {ALIASES[name]}", ""]
         return
     kind = "class" if inspect.isclass(thing) else "function" if inspect.isfunction(thing) else "data"
-    yield f".. auto{kind}:: rigidfluid.api.{name}"
     is_table = kind == "class" and issubclass(thing, BaseModel)
+    yield f".. auto{kind}:: rigidfluid.api.{name}{'(**keys)' if is_table else ''}"
     if kind == "class":
         # A member called `type` is what the type `type` of any parameter would lead to.
         yield "   :no-members:" if brief or is_table else "   :exclude-members: type"
