@@ -18,7 +18,7 @@ WITH_LOWEST := $(addprefix tests/unit/,test_cli.py test_registry.py core/case co
 	domains/test_cad.py domains/test_mesh_domain.py marching/test_marching.py taylor_hood/test_factorization.py post/reports) \
 	tests/contract/test_bodies.py tests/contract/test_force_laws.py
 
-.PHONY: run test test-lowest test-long test-plugins test-dolfinx install lint mutants pages validate nightly stale bench lock clean
+.PHONY: run test test-lowest test-long test-plugins test-dolfinx install lint docs mutants pages validate nightly stale bench lock clean
 
 run: install
 	$(BIN)/rigidfluid run scenes/falling_disk.toml
@@ -43,6 +43,10 @@ test-plugins: .venv/.installed-plugins
 test-dolfinx:
 	tools/dolfinx make
 	tools/dolfinx run python3 -m pytest -m 'not validation' $(WITH_DOLFINX)
+
+# The documentation site, in site/; a warning, as of a link that leads nowhere, ends it.
+docs: .venv/.installed-docs
+	$(BIN)/python -m sphinx -q -W --keep-going -b html docs site
 
 # The quick pages, made again elsewhere and compared.
 pages: .venv/.installed-plugins
@@ -79,7 +83,7 @@ lock: .venv/.installed-dev .venv/.installed-bench .venv/.installed-movies .venv/
 	$(BIN)/python tools/third_party.py
 
 clean:
-	rm -rf .venv .venv-lowest .dolfinx
+	rm -rf .venv .venv-lowest .dolfinx site
 
 # A stamp, since a venv that could not be finished leaves its python behind.
 %/.created:

@@ -1,0 +1,1 @@
+"""Parts of the documentation site: Sphinx extensions, and scripts that write pages."""
