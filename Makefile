@@ -77,7 +77,7 @@ bench: .venv/.installed-bench .venv/.installed-plugins
 	$(BIN)/python benchmarks/dry_spheres.py
 
 # The versions that are installed here, for those who want the same; run the tests with them first.
-lock: .venv/.installed-dev .venv/.installed-bench .venv/.installed-movies .venv/.installed-plugins
+lock: .venv/.installed-dev .venv/.installed-docs .venv/.installed-bench .venv/.installed-movies .venv/.installed-plugins
 	$(BIN)/python -m pip check
 	$(BIN)/python -m pip freeze --exclude-editable > requirements.lock
 	$(BIN)/python tools/third_party.py

@@ -54,8 +54,10 @@ class PartOptions(BaseModel, metaclass=TableType):
 
 
 class Part(metaclass=Guarded):
-    """Replaceable part: its name, other words for it, the packages it requires and its options. A ``kind`` of parts says
-    with `gives` what its methods give; whoever gives anything else is named."""
+    """Replaceable part: its name, other words for it, the packages it requires and its options.
+
+    A ``kind`` of parts says with `gives` what its methods give; whoever gives anything else is named.
+    """
 
     kind: ClassVar[str]
     name: ClassVar[str]
