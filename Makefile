@@ -9,7 +9,8 @@ PLUGINS := $(wildcard plugins/*)
 PARALLEL := -n 2 --dist worksteal --timeout-method thread
 PYTEST := $(BIN)/pytest $(PARALLEL)
 # Files in which tests need plug-ins, or PyVista as another reader of fields, and files in which they need DOLFINx.
-WITH_PLUGINS := tests/unit/core/run/test_resumption.py tests/unit/core/run/test_shared_run.py tests/unit/benchmarks
+WITH_PLUGINS := tests/unit/core/run/test_resumption.py tests/unit/core/run/test_shared_run.py tests/unit/benchmarks \
+	tests/unit/docs/test_validation_pages.py
 WITH_DOLFINX := tests/contract/test_fluid_backends.py tests/unit/backends/test_dolfinx.py \
 	tests/unit/benchmarks/test_backends_benchmark.py tests/unit/benchmarks/test_parallel_benchmark.py tests/mpi
 

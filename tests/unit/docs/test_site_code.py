@@ -35,7 +35,7 @@ def test_files_on_pages_are_scenes_or_programs(page: str, block: Block) -> None:
 
 def needs_other_files(table: dict[str, Any]) -> bool:
     """Whether a scene names a drawing or a law that other blocks of its page make."""
-    return "file" in table.get("domain", {}) or table["contact"].get("law") == "screened"
+    return "file" in table.get("domain", {}) or table.get("contact", {}).get("law") == "screened"
 
 
 @pytest.mark.long

@@ -24,7 +24,7 @@ GRID = [
     ("--shape", "polygon", "--units", "m"),
     ("--fluid", "glycerine", "--units", "mm", "--bodies", 4),
     ("--gravity", 0),
-    ("--gravity", 9.81, "--size", 5),
+    ("--gravity", 98.1, "--size", 5),
     ("--fluid", "none", "--bodies", 5),
     ("--fluid", "none", "--gravity", 0, "--shape", "polygon", "--bodies", 2),
     ("--dimension", 3),
@@ -88,6 +88,8 @@ def test_what_cannot_be_is_refused(tmp_path: Path) -> None:
     assert new(tmp_path / "a.toml", "--shape", "cube").exit_code == 2
     with pytest.raises(SceneError, match=r"a check still warns: .*memory.* Choose another --size or --fluid"):
         new_scene(Wishes(dimension=3, fluid="water", size=300.0), "mine")
+    with pytest.raises(SceneError, match=r"gravity is the Earth's in m/s²"):
+        new_scene(Wishes(gravity=9.81, size=5.0), "mine")  # units are cm
     assert list(tmp_path.iterdir()) == []
 
 
