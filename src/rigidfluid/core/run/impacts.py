@@ -6,11 +6,11 @@ from rigidfluid.core.contact.body_step import BodyStep
 from rigidfluid.core.model.state import State
 from rigidfluid.core.run.clock import Clock
 
-TOLERATED = 3e-4
+TOLERATED = 3e-5
 """Friction loss on the bodies' path of one step, over the energy put in since the start, above which the step is
 halved: it would lose several times as much, since its fluid answers to the impact by one thick layer."""
 
-HALVINGS = 3
+HALVINGS = 5
 """An impact halves a step so many times at most: it may last a millionth of it."""
 
 
