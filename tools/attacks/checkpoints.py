@@ -41,7 +41,7 @@ def _require_run(small: SmallRun, share: float, folder: Path) -> None:
 
 
 def _warm_up(small: SmallRun, place: Path) -> None:
-    """Load and compile here what each process would load anew; a resumed run meshes nothing, so this one may fork."""
+    """Load and compile here what each process would load again; a resumed run meshes nothing, so this one may fork."""
     shutil.copytree(place / small.name / "broken", place / "whole")
     if (said := _taken_up(small, place / "whole", place / small.name / "unbroken")) != EQUAL:
         raise SystemExit(f"a run {small.name} that nothing has damaged: {said}")

@@ -38,7 +38,7 @@ unbroken run to the last bit. Edits that renew the digest of a checkpoint too ar
     "kills": """
 Runs with checkpoints, which a signal ends at a random moment, five times each, taken up in between and at last left
 alone. A kill holds if the command ends without a traceback, by the signal or with exit code 130, and the tables of
-the last one are those of the unbroken run to the last bit. Where the end came first, the run is begun anew.
+the last one are those of the unbroken run to the last bit. Where the end came first, the run begins again.
 """,
 }
 """What is done, and when it holds."""

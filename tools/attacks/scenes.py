@@ -96,7 +96,7 @@ def _tried(
 
 @functools.cache
 def warm_up() -> None:
-    """Load and compile here what each process would load and compile anew."""
+    """Load and compile here what each process would load and compile again."""
     for name in BASES:
         try_settings((name, []))
 

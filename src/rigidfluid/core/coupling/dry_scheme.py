@@ -50,7 +50,7 @@ class DryScheme:
     def changes_gaps_too_fast(self, state: State, pose: Pose, mesh_at: Callable[[Pose], Mesh]) -> bool:
         return False
 
-    def begun_anew(self, state: State, first_level: int) -> State:
+    def restarted(self, state: State, first_level: int) -> State:
         """The state as after a start at once; the next step may be as long as ever."""
         return replace(state, ledger=replace(state.ledger, since_start=0.0))
 

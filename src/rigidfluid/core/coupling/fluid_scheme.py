@@ -103,7 +103,7 @@ class FluidScheme(ABC):
         return change_too_fast(self._system, state, pose, mesh_at)
 
     @abstractmethod
-    def begun_anew(self, state: State, first_level: int) -> State: ...
+    def restarted(self, state: State, first_level: int) -> State: ...
 
     def repeats_start(self, state: State, path: BodyStep) -> bool:
         """Whether nothing touches in a first step."""

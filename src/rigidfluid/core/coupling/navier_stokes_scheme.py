@@ -25,7 +25,7 @@ RESOLVED = 8.0
 class NavierStokesScheme(FluidScheme):
     """`Scheme` of bodies in a fluid with inertia: added mass acts in contacts at once, and the flow remembers them."""
 
-    def begun_anew(self, state: State, first_level: int) -> State:
+    def restarted(self, state: State, first_level: int) -> State:
         """The state as after a start at once, and a short step next."""
         level, ledger = max(state.level or 0, first_level), replace(state.ledger, since_start=0.0)
         return replace(state, level=level, ledger=ledger)

@@ -37,7 +37,7 @@ class Scheme(Protocol):
     def changes_gaps_too_fast(self, state: State, pose: Pose, mesh_at: Callable[[Pose], Mesh]) -> bool:
         """Whether gaps change by more than a step to ``pose`` can follow, on the mesh that ``mesh_at(pose)`` is."""
 
-    def begun_anew(self, state: State, first_level: int) -> State:
+    def restarted(self, state: State, first_level: int) -> State:
         """The state at a corner, where rates change at once; ``first_level``: of a step that follows a fluid's layers
         from there."""
 

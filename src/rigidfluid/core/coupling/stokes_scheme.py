@@ -21,7 +21,7 @@ from rigidfluid.core.model.types import Contacts, Step
 class StokesScheme(FluidScheme):
     """`Scheme` of bodies in a fluid without inertia: its drag follows from the present velocities alone."""
 
-    def begun_anew(self, state: State, first_level: int) -> State:
+    def restarted(self, state: State, first_level: int) -> State:
         """The state, and a short step next."""
         return replace(state, level=max(state.level or 0, first_level))
 

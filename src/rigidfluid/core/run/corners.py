@@ -21,7 +21,7 @@ def level_to_corner(system: System, clock: Clock, tick: int, level: int) -> int:
     return level
 
 
-def begun_anew(system: System, scheme: Scheme, clock: Clock, state: State) -> State:
+def restarted(system: System, scheme: Scheme, clock: Clock, state: State) -> State:
     """State without its past, from which nothing can be extrapolated, at a corner or jump and one step after it; else
     the same.
 
@@ -34,7 +34,7 @@ def begun_anew(system: System, scheme: Scheme, clock: Clock, state: State) -> St
         return replace(state, past=None)
     if _is_corner(system, clock, state.tick):
         estimate = state.estimate and state.estimate.restarted
-        return scheme.begun_anew(replace(state, past=None, estimate=estimate), start_level(clock))
+        return scheme.restarted(replace(state, past=None, estimate=estimate), start_level(clock))
     if _is_corner(system, clock, state.tick - clock.tick_from(state.past.step)):
         return replace(state, past=None)
     return state

@@ -19,7 +19,7 @@ from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.run.clock import Clock
-from rigidfluid.core.run.corners import begun_anew, level_to_corner
+from rigidfluid.core.run.corners import restarted, level_to_corner
 from rigidfluid.core.run.energy_causes import with_cause
 from rigidfluid.core.run.error_estimate import estimate_error
 from rigidfluid.core.run.impacts import is_unresolved, level_after_impact
@@ -94,7 +94,7 @@ class Stepper:
 
     def after(self, state: State) -> State:
         """The next accepted state; raises StepError where even the shortest step is rejected."""
-        state = begun_anew(self.system, self.scheme, self._clock, state)
+        state = restarted(self.system, self.scheme, self._clock, state)
         level, path = self._first_level(state)
         while True:
             try:

@@ -42,7 +42,7 @@ def halvings_within(halvings: int, step: float, over: float | None) -> int:
 
 def shortened(state: State, clock: Clock, halvings: int) -> State:
     """The state from which the next step is halved so many times, or as it would be without if that is shorter; it
-    restarts then, see `begun_anew`."""
+    restarts then, see `restarted`."""
     if halvings == 0:
         return state
     level = max(state.level or 0, min(halvings + 1, clock.levels))
