@@ -19,7 +19,7 @@ from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.run.clock import Clock
-from rigidfluid.core.run.corners import restarted, level_to_corner
+from rigidfluid.core.run.corners import level_to_corner, restarted
 from rigidfluid.core.run.energy_causes import with_cause
 from rigidfluid.core.run.error_estimate import estimate_error
 from rigidfluid.core.run.impacts import is_unresolved, level_after_impact
