@@ -13,7 +13,7 @@ from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.errors import StepRejected
 
 CLOSEST_APPROACH = 0.7
-"""A step may close a gap to this fraction of it, no further: the mesh has to follow, and the film's resistance grows."""
+"""A step may close a gap to this fraction of it, no further: the mesh follows, and the film's resistance grows."""
 
 WIDEST_OPENING = 1.5
 """A step may open a gap within the range of the law to so many times it: a film of fluid is as heavy as it is thin."""
