@@ -114,7 +114,8 @@ def _guarded(function: Callable[..., Any], key: str, check: Check) -> Callable[.
     def asked(part: Any, /, *given: Any, **named: Any) -> Any:
         try:
             answer = function(part, *given, **named)
-            if (part if isinstance(part, type) else type(part))._outermost.get(key) is asked:
+            kind: Any = part if isinstance(part, type) else type(part)
+            if kind._outermost.get(key) is asked:
                 check(answer, part, *given, **named)
         except (RigidfluidError, MemoryError):
             raise

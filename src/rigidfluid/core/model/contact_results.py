@@ -43,7 +43,8 @@ def refuse_odd(contacts: Contacts, pose: Pose, bodies: Sequence[Surface], walls:
     there = np.zeros(max((len(bodies) - 1, *(wall.surface for wall in walls))) + 1, dtype=np.bool_)
     there[: len(bodies)] = there[[wall.surface for wall in walls]] = True
     a, b, vectors = contacts.body_a, contacts.body_b, (contacts.point_a, contacts.point_b, contacts.normal)
-    search, lost, row = (_first_odd if count[0] <= _FEW else _compiled()), _TWICE, -1
+    search: Callable[..., tuple[int, int]] = _first_odd if count[0] <= _FEW else _compiled()
+    lost, row = _TWICE, -1
     with np.errstate(all="ignore"):  # as in compiled code
         while lost == _TWICE:
             lost, row = search(a, b, contacts.at_wall, there, pose.position, contacts.gap, *vectors, row + 1)

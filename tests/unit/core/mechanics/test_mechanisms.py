@@ -447,10 +447,19 @@ def test_a_scene_without_anything_that_moves_is_refused():
 @pytest.mark.parametrize(
     ("fault", "message"),
     [
-        (("np.zeros((2, self.dimension))", "np.zeros((2, 4))"), r"'odd', placement: found position .* of shape \(2, 4\); allowed is .* of shape \(2, 3\)"),
+        (
+            ("np.zeros((2, self.dimension))", "np.zeros((2, 4))"),
+            r"'odd', placement: found position .* of shape \(2, 4\); allowed is .* of shape \(2, 3\)",
+        ),
         (('"left", "right"', '"left", "left"'), r"\.0.*a name of its own"),
-        (("ratio * self.options.density", "-1.0"), "'odd', components: found density of 'left' -1.0; allowed is a number above 0"),
-        (("[1.0, 0.0, 0.0, 0.0]", "[1.1, 0.0, 0.0, 0.0]"), "'odd', placement: found quaternions .*; allowed is quaternions of length 1"),
+        (
+            ("ratio * self.options.density", "-1.0"),
+            "'odd', components: found density of 'left' -1.0; allowed is a number above 0",
+        ),
+        (
+            ("[1.0, 0.0, 0.0, 0.0]", "[1.1, 0.0, 0.0, 0.0]"),
+            "'odd', placement: found quaternions .*; allowed is quaternions of length 1",
+        ),
         (("    driven = True\n", ""), "'odd_stroke', rate: found a rate of what is not driven"),
     ],
 )

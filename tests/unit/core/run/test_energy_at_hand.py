@@ -78,11 +78,11 @@ def test_energy_lost_under_attraction_is_told(monkeypatch: pytest.MonkeyPatch) -
     assert history.summary["energy"]["put_in"] < 0.0 < np.ptp(history.energy["kinetic"])
     assert warned(history) == []
     monkeypatch.setattr(NormalLaw, "energy", lambda self, contacts: -1.2 * energy(self, contacts))
-    with pytest.raises(PluginError, match="force law 'normal', force: .* minus the slope of the energy"):
+    with pytest.raises(PluginError, match=r"force law 'normal', force: .* minus the slope of the energy"):
         attracted()
 
     def lost(self: NormalLaw, contacts: Contacts) -> FloatArray:
-        near = np.abs(contacts.gap - 0.25 * self.range) < 0.1 * self.range
+        near = np.abs(contacts.gap - 0.475 * self.range) < 0.075 * self.range
         return -(1.0 + 0.2 * near) * energy(self, contacts)
 
     monkeypatch.setattr(NormalLaw, "energy", lost)
