@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any
@@ -24,7 +25,7 @@ _ROUNDING = 1e-9
 """Greatest error of the length of normals, and of that distance over the coordinates of points and of the body."""
 
 _FEW = 4
-"""Number of contacts that take no longer than a compiler takes to be loaded, in a run of usual length."""
+"""Number of contacts for which no compiler is loaded, in a process that has not loaded it for others."""
 
 _KINDS = {"body_a": "iu", "body_b": "iu", "gap": "fiu", "radius_a": "fiu", "radius_b": "fiu", "at_wall": "b"}
 _VECTORS = ("point_a", "point_b", "normal")
@@ -43,7 +44,7 @@ def refuse_odd(contacts: Contacts, pose: Pose, bodies: Sequence[Surface], walls:
     there = np.zeros(max((len(bodies) - 1, *(wall.surface for wall in walls))) + 1, dtype=np.bool_)
     there[: len(bodies)] = there[[wall.surface for wall in walls]] = True
     a, b, vectors = contacts.body_a, contacts.body_b, (contacts.point_a, contacts.point_b, contacts.normal)
-    search: Callable[..., tuple[int, int]] = _first_odd if count[0] <= _FEW else _compiled()
+    search: Callable[..., tuple[int, int]] = _first_odd if _are_few(contacts) else _compiled()
     lost, row = _TWICE, -1
     with np.errstate(all="ignore"):  # as in compiled code
         while lost == _TWICE:
@@ -57,6 +58,10 @@ def refuse_odd(contacts: Contacts, pose: Pose, bodies: Sequence[Surface], walls:
             refuse_other_rows(getattr(contacts, name), np.shape(getattr(contacts, name)), name, shorter=True)
     found, allowed = _ODD[lost]
     raise Wrong(f"{found}, contact {row} of surfaces {a[row]} and {b[row]}", allowed)
+
+
+def _are_few(contacts: Contacts) -> bool:
+    return len(contacts) <= _FEW and "numba" not in sys.modules
 
 
 def _may_be_corners(a: int, b: int, bodies: Sequence[Surface], walls: Sequence[Wall]) -> bool:

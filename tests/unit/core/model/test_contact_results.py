@@ -1,5 +1,6 @@
-"""Contacts that no run may go on with, and such as only look odd, few of them and many."""
+"""Contacts that no run may go on with, and such as only look odd."""
 
+import sys
 from dataclasses import fields
 
 import numpy as np
@@ -8,11 +9,20 @@ from facet_shapes import SQUARE, polygon
 from mesh_tools import ball, box_walls, upright
 
 from rigidfluid.core.geometry.wrong import Wrong
+from rigidfluid.core.model import contact_results
 from rigidfluid.core.model.contact_results import refuse_odd
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.types import Contacts
 
-FEW_AND_MANY = pytest.mark.parametrize("count", [2, 12])
+COUNTS = pytest.mark.parametrize("count", [2, 12])
+
+
+@pytest.fixture(autouse=True, params=["compiled", "without a compiler"])
+def compiler(request, monkeypatch):
+    """Few contacts are not worth one that is not loaded."""
+    if request.param != "compiled":
+        monkeypatch.setattr(contact_results, "_FEW", 100)
+        monkeypatch.delitem(sys.modules, "numba")
 
 
 def in_a_row(shape, count):
@@ -45,7 +55,7 @@ def changed(found, row, **values):
     return Contacts(**columns)
 
 
-@FEW_AND_MANY
+@COUNTS
 @pytest.mark.parametrize(
     ("values", "told"),
     [
@@ -63,7 +73,7 @@ def test_what_is_odd_is_named(count, values, told):
         refuse_odd(changed(contacts(count), 1, **values), pose, bodies, [])
 
 
-@FEW_AND_MANY
+@COUNTS
 def test_only_corners_are_twice_in_a_place(count):
     """Those that face each other, as when they are a little beside each other; of the others one is too many."""
     doubled = select(contacts(count, at=0.5), np.repeat(np.arange(count), 2))
@@ -74,7 +84,7 @@ def test_only_corners_are_twice_in_a_place(count):
         refuse_odd(doubled, pose, bodies, [])
 
 
-@FEW_AND_MANY
+@COUNTS
 def test_points_at_the_origin_are_as_accurate_as_bodies_are_large(count):
     bodies, pose = in_a_row(ball(0.5), count)
     middle = contacts(count)
