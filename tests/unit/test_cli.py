@@ -292,12 +292,18 @@ def test_missing_package_is_listed_with_its_hint(install: Install, law: str) -> 
     assert rigidfluid_process("check", SCENE, path=path).returncode == 0
 
 
-def test_misspelt_hook_fails_at_start(install: Install, law: str) -> None:
-    result = rigidfluid_process("plugins", path=install(law.replace("rigidfluid_force_laws", "rigidfluid_force_law")))
-    assert result.returncode == 2
-    assert_one_paragraph(
-        result.stderr, "springy 1.2", "'rigidfluid_force_law'", "Did you mean 'rigidfluid_force_laws'?"
-    )
+def test_a_misspelt_hook_is_listed_and_fails_who_uses_it_at_start(install: Install, law: str) -> None:
+    path = install(law.replace("rigidfluid_force_laws", "rigidfluid_force_law"))
+    why = "'rigidfluid_force_law'", "Did you mean 'rigidfluid_force_laws'?"
+    listed = rigidfluid_process("plugins", path=path)
+    row = next(line for line in listed.stdout.splitlines() if "springy 1.2" in line)
+    assert [cell.strip() for cell in row.split("│")[1:4]] == ["plug-in", "springy", "springy 1.2"]
+    assert "│ no: found hook 'rigidfluid_force_law'" in row
+    assert why[1] in " ".join(line.split("│")[-2].strip() for line in listed.stdout.splitlines() if "│" in line)
+    refused = rigidfluid_process("check", SCENE, "--set", "contact.law=springy", path=path)
+    assert refused.returncode == 2
+    assert_one_paragraph(refused.stderr, "contact.law", "springy 1.2", *why)
+    assert rigidfluid_process("check", SCENE, path=path).returncode == 0
 
 
 @pytest.mark.parametrize("name", ["[/x]", "[red]q[/blue]"])

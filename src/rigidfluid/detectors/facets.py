@@ -29,9 +29,6 @@ from rigidfluid.errors import SceneError
 SPREAD = 0.5
 """Greatest difference of gap between contacts of a pair, over the smaller bounding radius [1]; others are left out."""
 
-_ROUNDING = 1e-12
-"""Greatest difference of equal points, over the largest coordinate [1]."""
-
 
 class Touches(NamedTuple):
     """Places at which two surfaces are near each other: ``point_a``, ``point_b``, ``normal`` (m, d) from b to a,
@@ -228,15 +225,7 @@ def _pair_touches(a: _Placed, b: _Placed | _Wall, reach: float, spread: float) -
     found = Touches(*(np.concatenate(each) for each in zip(*parts, strict=True)))
     least = found.gap.min(initial=np.inf)
     found = found.select((found.gap <= reach) & (found.gap <= max(least, 0.0) + spread))
-    found = Touches(*(each[np.argsort(found.gap, kind="stable")] for each in found))
-    return found.select(_first_ones(found))
-
-
-def _first_ones(found: Touches) -> BoolArray:
-    """Whether a place is not the one before it (m,): two corners that face each other are found from both sides."""
-    points = np.concatenate([found.point_a, found.point_b], axis=1)
-    rounding = _ROUNDING * np.abs(points).max(initial=0.0)
-    return np.append(True, np.any(np.abs(np.diff(points, axis=0)) > rounding, axis=1))[: len(points)]
+    return Touches(*(each[np.argsort(found.gap, kind="stable")] for each in found))
 
 
 def _smooth_touches(body: _Ball | _Ellipsoid, other: _Facets | _Round, reach: float, spread: float) -> Touches:

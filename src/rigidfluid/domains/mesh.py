@@ -72,8 +72,9 @@ class MeshDomain(Domain):
         markers = np.array([piece_of[number] for number in facets.markers.tolist()], dtype=np.int64)
         self._facets = Facets(facets.points, facets.vertices, markers)
         self._whole = FacetSurface(self._facets)
-        if not self.volume > _LEAST_VOLUME * float(self.size.max()) ** dimension:
-            found = f"facets that enclose a volume of {self.volume:.3g}"
+        self._volume = -enclosed_volume(facets.points, facets.vertices)
+        if not self._volume > _LEAST_VOLUME * float(np.ptp(facets.points, axis=0).max()) ** dimension:
+            found = f"facets that enclose a volume of {self._volume:.3g}"
             raise SceneError(FIELD, found, "facets around a region of some volume", "Rewrite the file.")
 
     @property
@@ -94,7 +95,7 @@ class MeshDomain(Domain):
     @property
     def volume(self) -> float:
         """Exact volume of the polyhedron [length^d]."""
-        return -enclosed_volume(self._facets.points, self._facets.vertices)
+        return self._volume
 
     @property
     def remarks(self) -> tuple[str, ...]:

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from mesh_tools import ball, ellipsoid
 from scipy.optimize import minimize
+from unknown_shapes import Cross
 
-from rigidfluid.bodies.sphere import Sphere, SphereOptions
+from rigidfluid.bodies.sphere import SphereOptions
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.surface import Plane
 from rigidfluid.core.geometry.unit_sphere import unit_sphere_points
@@ -339,10 +340,6 @@ print(len(found), "numba" in sys.modules)
 
 
 def test_other_shapes_are_refused_by_number_with_a_remedy() -> None:
-    class Cross(Sphere):
-        name = "cross"
-        radius = None  # type: ignore[assignment]
-
     bodies = [ball(1.0), Cross(SphereOptions(radius=1.0), 2)]
     with pytest.raises(SceneError, match=r'contact\.detector: .*body\.1 of type "cross".*auto'):
         EllipsoidDetector(PartOptions(), bodies, [])

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from facet_shapes import BAR, CUBE, L_SHAPE, SQUARE, TRIANGLES, binary_stl, polygon, polyhedron
 from mesh_tools import ball, ellipsoid
+from unknown_shapes import Cross
 
-from rigidfluid.bodies.sphere import Sphere, SphereOptions
+from rigidfluid.bodies.sphere import SphereOptions
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.facet_surface import FacetSurface
 from rigidfluid.core.geometry.facets import Facets
@@ -158,10 +159,6 @@ def test_walls_of_facets_have_corners_too() -> None:
 
 
 def test_other_shapes_are_refused_by_name() -> None:
-    class Cross(Sphere):
-        name = "cross"
-        radius = None  # type: ignore[assignment]
-
     with pytest.raises(SceneError, match=r'"facets" with body\.0 of type "cross"'):
         FacetDetector(PartOptions(), [Cross(SphereOptions(radius=1.0), 2)], [])
 

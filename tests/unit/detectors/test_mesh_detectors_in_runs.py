@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from mesh_tools import ball, box, ellipsoid
+from unknown_shapes import Cross
 
-from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
 from rigidfluid.core.contact.detector_choice import choose_detector
@@ -75,10 +75,6 @@ def test_auto_takes_the_cheapest_detector_that_is_exact():
     assert (chosen.detector.name, chosen.detector_why) == ("ellipsoid", "chosen as all bodies are balls or ellipsoids")
     bodies = [ellipsoid(0.1, 0.05), ball(0.1)]
     assert chosen_names(bodies) == ["ellipsoid", "ellipsoid"]
-
-    class Cross(Sphere):
-        name = "cross"
-        radius = None
 
     bodies.append(Cross(Cross.Options(radius=0.1), 2))
     assert chosen_names(bodies) == ["narrow_band", "brute_force"]

@@ -350,7 +350,7 @@ def test_a_contact_that_takes_a_wall_for_a_body_is_refused() -> None:
     found = system.detector.detect(system.pose, None, np.inf)
     lying = replace(found, at_wall=~found.at_wall)
     with pytest.raises(Wrong, match="surfaces that there are not"):
-        refuse_odd(lying, 2, 1, [1])
+        refuse_odd(lying, system.pose, system.detector.bodies, system.detector.walls)
 
 
 def test_the_domain_is_listed_and_in_the_schema() -> None:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from rigidfluid.api import AtRest, PartOptions, SizeField
+from rigidfluid.errors import PluginError
 from rigidfluid.size_fields.vorticity import Vorticity, VorticityOptions
 from rigidfluid.testing import SizeFieldContract
 from rigidfluid.testing.size_field import Whirl
@@ -86,10 +87,6 @@ def arguments(field, turning):
 @pytest.mark.parametrize(
     ("kind", "found", "passed"),
     [
-        (Nowhere, "test_lengths_are_positive_and_finite", "test_it_remembers_nothing"),
-        (NoNumber, "test_lengths_are_positive_and_finite", "test_its_arguments_stay_as_they_are"),
-        (Column, "test_lengths_are_positive_and_finite", "test_it_remembers_nothing"),
-        (One, "test_no_points_have_no_lengths", "test_lengths_are_positive_and_finite"),
         (Mover, "test_its_arguments_stay_as_they_are", "test_lengths_are_positive_and_finite"),
         (Stopper, "test_its_arguments_stay_as_they_are", "test_lengths_are_positive_and_finite"),
         (Ranked, "test_each_length_is_of_its_point_alone", "test_it_remembers_nothing"),
@@ -97,12 +94,33 @@ def arguments(field, turning):
         (Remembering, "test_it_remembers_nothing", "test_lengths_are_positive_and_finite"),
     ],
 )
-@pytest.mark.filterwarnings("ignore:invalid value:RuntimeWarning")
 def test_each_flaw_is_found(kind, found, passed, dimension):
     contract, given = arguments(kind(PartOptions(), dimension), turning=False)
     with pytest.raises(AssertionError):
         getattr(contract, found)(*given)
     getattr(contract, passed)(*arguments(kind(PartOptions(), dimension), turning=False)[1])
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize(
+    ("kind", "found", "told"),
+    [
+        (Nowhere, "test_lengths_are_positive_and_finite", "found 0.0; allowed is numbers above 0"),
+        (NoNumber, "test_lengths_are_positive_and_finite", "found nan; allowed is finite numbers"),
+        (Column, "test_lengths_are_positive_and_finite", r"found .* shape \(45, 1\); allowed is .* shape \(45,\)"),
+        (One, "test_no_points_have_no_lengths", r"found .* of shape \(1,\); allowed is .* of shape \(0,\)"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore:invalid value:RuntimeWarning")
+def test_what_no_field_may_give_is_named(kind, found, told, dimension):
+    contract, given = arguments(kind(PartOptions(), dimension), turning=False)
+    with pytest.raises(PluginError, match=f"size field 'distance', edge_length: {told}"):
+        getattr(contract, found)(*given)
+
+
+def test_a_field_that_takes_points_for_granted_passes_with_points():
+    contract, given = arguments(One(PartOptions(), 2), turning=False)
+    contract.test_lengths_are_positive_and_finite(*given)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -28,8 +28,8 @@ _TOLERANCE = 1e-3
 
 
 def check_laws(system: System) -> None:
-    """Raise PluginError unless each law's energy is none below zero, its force is -dU/dgap along the normal, its
-    stiffness -dF/dgap, and its damping takes power, in a hypothetical contact in which it acts."""
+    """Raise PluginError unless each law's force is -dU/dgap along the normal, its stiffness -dF/dgap, and its damping
+    takes power, in a hypothetical contact in which it acts."""
     for interaction in system.interactions:
         contacts = _some_contact(system, interaction)
         if len(contacts):
@@ -50,10 +50,8 @@ def _some_contact(system: System, interaction: Interaction) -> Contacts:
 
 
 def _check_law(law: ForceLaw, contacts: Contacts) -> None:
-    energy, force, stiffness = law.energy(contacts), law.force(contacts), law.stiffness(contacts)
+    force, stiffness = law.force(contacts), law.stiffness(contacts)
     along = np.sum(force * contacts.normal, axis=1)
-    if energy.min() < 0.0:
-        raise _refusal(law, "energy", contacts, energy, energy < 0.0, "energies from 0, at the range, on")
     across = np.linalg.norm(force - along[:, None] * contacts.normal, axis=1)
     if np.any(across > _TOLERANCE * np.abs(along)):
         raise _refusal(law, "force", contacts, across, across > 0.0, "forces along the normal, and damping besides")

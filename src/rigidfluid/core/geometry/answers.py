@@ -70,12 +70,11 @@ def refuse_no_number(answer: Any, name: str = "", least: float = -inf, shorter: 
         raise Wrong(f"{name} {answer}".strip(), f"a number above {least:g}")
 
 
-def number(least: float = -inf, shorter: bool = False, infinite: bool = False) -> Check:
-    """Check of a finite number above ``least``, or +∞ where it may be ``infinite``."""
+def number(least: float = -inf, shorter: bool = False) -> Check:
+    """Check of a finite number above ``least``."""
 
     def check(answer: Any, *_: Any, **__: Any) -> None:
-        if not (infinite and isinstance(answer, float) and answer == inf):
-            refuse_no_number(answer, "", least, shorter)
+        refuse_no_number(answer, "", least, shorter)
 
     return check
 

@@ -34,14 +34,16 @@ def gives(check: Check) -> Callable[[F], F]:
 class Guarded(ABCMeta):
     """Type of interfaces and of the classes that implement them.
 
-    Answers that an interface declares by `gives` are checked at each call. Properties are asked once an object is made,
-    and so are attributes that the interface annotates. An interface has a ``kind``, its name in messages. Errors that
+    Answers that an interface declares by `gives` are checked at each call, but for what an overriding method asks of
+    the one that it overrides. Properties are asked once an object is made, and so are attributes that the interface
+    annotates. An interface has a ``kind``, its name in messages. Errors that
     are none of rigidfluid become a PluginError that names the part and the method, and keeps their cause.
     """
 
     def __init__(cls, name: str, bases: tuple[type, ...], namespace: dict[str, Any], **rest: Any) -> None:
         super().__init__(name, bases, namespace, **rest)
         cls._values: dict[str, Check | None] = {}
+        cls._outermost: dict[str, Any] = {}
         declared = {
             key: member for base in reversed(cls.__mro__) for key, member in vars(base).items() if _declared_by(member)
         }
@@ -53,7 +55,9 @@ class Guarded(ABCMeta):
                 if plain:
                     continue
             if not (getattr(member, "__isabstractmethod__", False) or hasattr(_function_of(member), "__guarded__")):
-                setattr(cls, key, _guarded_member(cls, key, member, _declared_by(interface)))
+                member = _guarded_member(cls, key, member, _declared_by(interface))
+                setattr(cls, key, member)
+            cls._outermost[key] = _function_of(member)
 
     def __call__(cls, *given: Any, **named: Any) -> Any:
         with _blamed(cls, "__init__"):
@@ -110,7 +114,9 @@ def _guarded(function: Callable[..., Any], key: str, check: Check) -> Callable[.
     def asked(part: Any, /, *given: Any, **named: Any) -> Any:
         try:
             answer = function(part, *given, **named)
-            check(answer, part, *given, **named)
+            kind: Any = part if isinstance(part, type) else type(part)
+            if kind._outermost.get(key) is asked:
+                check(answer, part, *given, **named)
         except (RigidfluidError, MemoryError):
             raise
         except (Exception, SystemExit) as error:

@@ -5,39 +5,52 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import sys
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any
 
 import numpy as np
-from numba import njit
 
 from rigidfluid.core.geometry.answers import refuse_other_rows, refuse_other_shape
+from rigidfluid.core.geometry.surface import Surface
+from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.geometry.wrong import Wrong
-from rigidfluid.core.model.types import Contacts
+from rigidfluid.core.model.types import Contacts, Pose
 
 _APART = 1e-6
 """Greatest distance from ``point_b + gap * normal`` to ``point_a``, over the gap."""
 
 _ROUNDING = 1e-9
-"""Greatest error of the length of normals, and of that distance over the coordinates."""
+"""Greatest error of the length of normals, and of that distance over the coordinates of points and of the body."""
+
+_FEW = 4
+"""Number of contacts for which no compiler is loaded, in a process that has not loaded it for others."""
 
 _KINDS = {"body_a": "iu", "body_b": "iu", "gap": "fiu", "radius_a": "fiu", "radius_b": "fiu", "at_wall": "b"}
 _VECTORS = ("point_a", "point_b", "normal")
 
 
-def refuse_odd(contacts: Contacts, dimension: int, bodies: int, walls: Sequence[int]) -> None:
-    """Raise `Wrong` unless a detector's contacts are finite, sorted, each there once, between ``bodies`` and ``walls``
-    that there are, and with points a gap apart along a normal."""
+def refuse_odd(contacts: Contacts, pose: Pose, bodies: Sequence[Surface], walls: Sequence[Wall]) -> None:
+    """Raise `Wrong` unless a detector's contacts are finite, sorted, each there once, between ``bodies`` at a ``pose``
+    and ``walls`` that there are, and with points a gap apart along a normal."""
     count = np.shape(contacts.gap)[:1] or (1,)
     for name, kinds in _KINDS.items():
         refuse_other_shape(getattr(contacts, name), count, name, kinds)
     for name in _VECTORS:
-        refuse_other_shape(getattr(contacts, name), (*count, dimension), name)
+        refuse_other_shape(getattr(contacts, name), (*count, pose.position.shape[1]), name)
     if count[0] == 0:
         return
-    there = np.zeros(max((bodies - 1, *walls)) + 1, dtype=np.bool_)
-    there[:bodies] = there[list(walls)] = True
+    there = np.zeros(max((len(bodies) - 1, *(wall.surface for wall in walls))) + 1, dtype=np.bool_)
+    there[: len(bodies)] = there[[wall.surface for wall in walls]] = True
     a, b, vectors = contacts.body_a, contacts.body_b, (contacts.point_a, contacts.point_b, contacts.normal)
-    lost, row = _first_odd(a, b, contacts.at_wall, there, bodies, contacts.gap, *vectors)
+    search: Callable[..., tuple[int, int]] = _first_odd if _are_few(contacts) else _compiled()
+    lost, row = _TWICE, -1
+    with np.errstate(all="ignore"):  # as in compiled code
+        while lost == _TWICE:
+            lost, row = search(a, b, contacts.at_wall, there, pose.position, contacts.gap, *vectors, row + 1)
+            if lost == _TWICE and not _may_be_corners(a[row], b[row], bodies, walls):
+                break
     if lost == 0:
         return
     if lost == _NOT_FINITE:
@@ -47,8 +60,20 @@ def refuse_odd(contacts: Contacts, dimension: int, bodies: int, walls: Sequence[
     raise Wrong(f"{found}, contact {row} of surfaces {a[row]} and {b[row]}", allowed)
 
 
+def _are_few(contacts: Contacts) -> bool:
+    return len(contacts) <= _FEW and "numba" not in sys.modules
+
+
+def _may_be_corners(a: int, b: int, bodies: Sequence[Surface], walls: Sequence[Wall]) -> bool:
+    """Whether both surfaces have corners: two that face each other are one contact for each, as they are a little
+    beside each other."""
+    other = bodies[b] if b < len(bodies) else next(wall.shape for wall in walls if wall.surface == b)
+    return all(getattr(shape, "facets", None) is not None for shape in (bodies[a], other))
+
+
 _NOT_THERE, _NOT_FINITE, _NOT_SORTED, _TWICE, _NOT_APART = range(1, 6)
 _ODD = {
+    _NOT_FINITE: ("a contact that is too far away", "coordinates whose squares are finite"),
     _NOT_THERE: ("a contact of surfaces that there are not", "body_a a body, body_b a body or wall, as at_wall says"),
     _NOT_SORTED: ("a contact out of order", "contacts sorted by (body_a, body_b), body_a < body_b"),
     _TWICE: ("the contact before it once more", "each contact once"),
@@ -56,18 +81,25 @@ _ODD = {
 }
 
 
-@njit(cache=True)
-def _first_odd(a, b, at_wall, there, bodies, gap, point_a, point_b, normal):
-    """Kind of the first odd row, 0 if there is none, and its number: in one loop, as every substep asks."""
-    dimension = normal.shape[1]
-    for i in range(len(a)):
+@cache
+def _compiled() -> Callable[..., Any]:
+    from numba import njit
+
+    return njit(cache=True)(_first_odd)
+
+
+def _first_odd(a, b, at_wall, there, centres, gap, point_a, point_b, normal, first):
+    """Kind of the first odd row from the ``first`` on, 0 if there is none, and its number: in one loop, as every
+    substep asks."""
+    bodies, dimension = centres.shape
+    for i in range(first, len(a)):
         if not (0 <= a[i] < bodies and 0 <= b[i] < len(there)) or not there[b[i]] or at_wall[i] != (b[i] >= bodies):
             return _NOT_THERE, i
         length, off, size, same = 0.0, 0.0, 0.0, i > 0
         for k in range(dimension):
             length += normal[i, k] ** 2
             off += (point_b[i, k] + gap[i] * normal[i, k] - point_a[i, k]) ** 2
-            size += point_a[i, k] ** 2 + point_b[i, k] ** 2
+            size += point_a[i, k] ** 2 + point_b[i, k] ** 2 + centres[a[i], k] ** 2
             same = same and point_a[i, k] == point_a[i - 1, k] and point_b[i, k] == point_b[i - 1, k]
         if not np.isfinite(length + off + size):
             return _NOT_FINITE, i

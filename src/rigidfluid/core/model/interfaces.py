@@ -254,7 +254,7 @@ class Detector(Part):
         """
         return None
 
-    @gives(number(0.0, infinite=True))
+    @gives(parts.reach)
     def preferred_reach(self, law_range: float) -> float:
         """The reach that the loop should ask for with a law of this range [length]; infinite if it costs little."""
         return math.inf

@@ -113,9 +113,17 @@ def later(answer: Any, part: Any, time: float) -> None:
             raise Wrong(f"{answer}", f"a time after {time:g}")
 
 
+def reach(answer: Any, part: Any, law_range: float) -> None:
+    """Refuse what is no reach; it is 0 where nothing is to be measured, and may be infinite."""
+    if not (isinstance(answer, float) and answer == inf):
+        refuse_no_number(answer)
+    if answer < 0.0:
+        raise Wrong(f"{answer}", "a reach of 0 or more")
+
+
 def ranges(answer: Any, part: Any) -> None:
     """Refuse what are no gaps at which a law begins."""
-    several(lambda: float, least=1)(answer)
+    several(lambda: object, least=1)(answer)
     for one in answer:
         refuse_no_number(one, "range", least=0.0)
 
@@ -132,4 +140,4 @@ def contacts(answer: Any, part: Any, pose: Pose, mesh: Any, reach: float) -> Non
     from rigidfluid.core.model.contact_results import refuse_odd
 
     refuse_others(answer, Contacts)
-    refuse_odd(answer, pose.position.shape[1], len(part.bodies), [wall.surface for wall in part.walls])
+    refuse_odd(answer, pose, part.bodies, part.walls)

@@ -249,9 +249,9 @@ def _missing_key(place: _Place, table: Mapping[str, Any], key: str) -> SceneErro
     if misspelt is not None:
         return misspelt
     meaning = fields[key].description
-    if meaning is None:
+    if meaning is None and _table_in(fields[key].annotation) is not None:
         return SceneError(place.field, "nothing", "a table", f"Add the table [{place.field}].")
-    return SceneError(place.field, "nothing", meaning, f"Add the key {key!r}.")
+    return SceneError(place.field, "nothing", meaning or "a value", f"Add the key {key!r}.")
 
 
 def _misspelt_key(field: str, table: Mapping[str, Any], key: str, known: Iterable[str]) -> SceneError | None:

@@ -138,10 +138,18 @@ def test_a_table_that_cannot_be_is_refused_by_its_key(table: dict[str, object], 
     assert caught.value.subject == field
 
 
-@pytest.mark.parametrize("result", ["-(" + RIGHT + ")", "np.nan * points[:, 0]", "np.inf + points[:, 0]", "points"])
-def test_lengths_that_are_none_are_refused_by_name(install: Install, result: str) -> None:
+@pytest.mark.parametrize(
+    ("result", "told"),
+    [
+        ("-(" + RIGHT + ")", "found -0.*; allowed is numbers above 0"),
+        ("np.nan * points[:, 0]", "found nan; allowed is finite numbers"),
+        ("np.inf + points[:, 0]", "found inf; allowed is finite numbers"),
+        ("points", r"found an array of float64 of shape \(18, 2\); allowed is .* of real numbers of shape \(18,\)"),
+    ],
+)
+def test_lengths_that_are_none_are_refused_by_name(install: Install, result: str, told: str) -> None:
     install(BANDS.replace("RESULT", result), name="bands", module="bands")
-    with pytest.raises(PluginError, match=r"mesh\.field 'band': found edge lengths of shape"):
+    with pytest.raises(PluginError, match=f"size field 'band', edge_length: {told}"):
         Simulation(fall({"type": "band", "height": 1.0, "size": 0.04}))
 
 

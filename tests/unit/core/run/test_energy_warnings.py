@@ -13,9 +13,11 @@ from starts import DISK, INFLOW, disk_in_box
 
 import rigidfluid
 from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import Contacts
 from rigidfluid.core.output.energy_account import NOTICEABLE, STABILISED
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.errors import RunWarning
+from rigidfluid.errors import PluginError, RunWarning
 from rigidfluid.forces.normal import NormalLaw
 from rigidfluid.taylor_hood.backend import TaylorHoodBackend
 
@@ -131,10 +133,17 @@ def test_a_lossy_transfer_is_told(monkeypatch: pytest.MonkeyPatch, honest: bool)
 
 
 def test_a_law_whose_energy_is_not_its_forces_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    """In an impact what is stored seems to vanish, and to come back."""
+    """In an impact what is stored seems to vanish, and to come back; where it is looked at before, it is refused."""
     assert account(thrown({}))[1] == []
     energy = NormalLaw.energy
     monkeypatch.setattr(NormalLaw, "energy", lambda self, contacts: 0.9 * energy(self, contacts))
+    with pytest.raises(PluginError, match=r"force law 'normal', force: .* minus the slope of the energy"):
+        account(thrown({}))
+
+    def less(self: NormalLaw, contacts: Contacts) -> FloatArray:
+        return np.where(contacts.gap > 0.84 * self.range, 0.9, 1.0) * energy(self, contacts)
+
+    monkeypatch.setattr(NormalLaw, "energy", less)
     error, told = account(thrown({}))
     assert error > 1.0
     assert "at impacts" in told[0]
