@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from rigidfluid.core.model.interfaces import Part
 from rigidfluid.core.nested.part_options import own_options, read_options
 from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.scene import (
@@ -30,7 +31,7 @@ from rigidfluid.registry import (
     Registry,
 )
 
-_NAMED = (
+_NAMED: tuple[tuple[str, str, Kind[Any], Any], ...] = (
     ("fluid", "backend", FLUID_BACKEND, FluidTable),
     ("domain", "type", DOMAIN, DomainTable),
     ("body", "type", BODY, BodyTable),
@@ -52,14 +53,12 @@ def check_part_tables(data: Mapping[str, Any], registry: Registry) -> None:
             for at, table in _tables(data, place):
                 name = table.get(key, model.model_fields[key].default if model else None)
                 if isinstance(name, str) and name != "auto":
-                    ask(_check_table, registry, kind, name, (at, key), table, model)
+                    part = ask(registry.find, kind, name, f"{at}.{key}")
+                    if part is not None:
+                        ask(_check_table, part, at, table, model)
 
 
-def _check_table(
-    registry: Registry, kind: Kind[Any], name: str, place: tuple[str, str], table: Mapping[str, Any], model: Any
-) -> None:
-    at, key = place
-    part = registry.find(kind, name, f"{at}.{key}")
+def _check_table(part: type[Part], at: str, table: Mapping[str, Any], model: Any) -> None:
     if model is None:
         own_options(part, table, at)
     else:

@@ -54,13 +54,15 @@ def _check_law(law: ForceLaw, contacts: Contacts) -> None:
     along = np.sum(force * contacts.normal, axis=1)
     across = np.linalg.norm(force - along[:, None] * contacts.normal, axis=1)
     if np.any(across > _TOLERANCE * np.abs(along)):
-        raise _refusal(law, "force", contacts, across, across > 0.0, "forces along the normal, and damping besides")
+        wrong = _wrong(contacts, across, across > 0.0, "forces along the normal, and damping besides")
+        raise told_of(law, "force", wrong)
     _check_slope(law, "force", contacts, along, law.energy)
     _check_slope(law, "stiffness", contacts, stiffness, lambda one: np.sum(law.force(one) * one.normal, axis=1))
     for velocity in (contacts.normal, -contacts.normal):
         power = np.sum(law.damping(contacts, Motion(velocity, np.ones(len(contacts)))) * velocity, axis=1)
         if np.any(power > 0.0):
-            raise _refusal(law, "damping", contacts, power, power > 0.0, "powers, force times velocity, of 0 or less")
+            wrong = _wrong(contacts, power, power > 0.0, "powers, force times velocity, of 0 or less")
+            raise told_of(law, "damping", wrong)
 
 
 def _check_slope(
@@ -75,11 +77,9 @@ def _check_slope(
     if wrong.any():
         of = "the energy" if key == "force" else "the force"
         allowed = f"{slope[wrong][0]:.6g}, minus the slope of {of}"
-        raise _refusal(law, key, contacts, found, wrong, allowed)
+        raise told_of(law, key, _wrong(contacts, found, wrong, allowed))
 
 
-def _refusal(
-    law: ForceLaw, key: str, contacts: Contacts, values: FloatArray, wrong: BoolArray, allowed: str
-) -> Exception:
-    found = f"{values[wrong][0]:.6g} at a gap of {contacts.gap[wrong][0]:.6g}"
-    return told_of(law, key, Wrong(found, allowed))
+def _wrong(contacts: Contacts, values: FloatArray, wrong: BoolArray, allowed: str) -> Wrong:
+    """The first of the ``values`` that are ``wrong``, and its gap."""
+    return Wrong(f"{values[wrong][0]:.6g} at a gap of {contacts.gap[wrong][0]:.6g}", allowed)

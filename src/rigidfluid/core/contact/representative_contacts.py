@@ -60,7 +60,8 @@ def wall_contacts(system: System, bodies: Sequence[int], walls: Sequence[Wall]) 
     normals = [facing_normal(system, body, wall.shape) for body, wall in zip(bodies, walls, strict=True)]
     radius = np.array([radius_of(wall.shape) for wall in walls])
     at_wall, normal = np.ones(len(walls), dtype=bool), np.array(normals).reshape(-1, system.dimension)
-    return _touching(system, bodies, [wall.surface for wall in walls], normal, radius, at_wall)
+    pairs = [(body, wall.surface) for body, wall in zip(bodies, walls, strict=True)]
+    return _touching(system, pairs, normal, radius, at_wall)
 
 
 def facing_normal(system: System, body: int, shape: Surface) -> FloatArray:
@@ -79,9 +80,8 @@ def free(system: System, bodies: Sequence[int]) -> list[int]:
 def pair_contacts(system: System, bodies: Sequence[int]) -> Contacts:
     """Contact of each pair of separate ``bodies`` of which one is free, gap zero."""
     pairs = [pair for pair in combinations(bodies, 2) if free(system, pair)]
-    first, second = [a for a, _ in pairs], [b for _, b in pairs]
-    radius, at_wall = np.array([radius_of(system.bodies[b]) for b in second]), np.zeros(len(pairs), dtype=bool)
-    contacts = _touching(system, first, second, np.eye(system.dimension)[0], radius, at_wall)
+    radius, at_wall = np.array([radius_of(system.bodies[b]) for _, b in pairs]), np.zeros(len(pairs), dtype=bool)
+    contacts = _touching(system, pairs, np.eye(system.dimension)[0], radius, at_wall)
     return select(contacts, are_separate(system, contacts))
 
 
@@ -93,16 +93,17 @@ def contacts_at_gaps(contacts: Contacts, gaps: FloatArray) -> Contacts:
 
 
 def _touching(
-    system: System, a: Sequence[int], b: Sequence[int], normal: FloatArray, radius_b: FloatArray, at_wall: BoolArray
+    system: System, pairs: Sequence[tuple[int, int]], normal: FloatArray, radius_b: FloatArray, at_wall: BoolArray
 ) -> Contacts:
-    points = np.zeros((len(a), system.dimension))
+    points = np.zeros((len(pairs), system.dimension))
+    a, b = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
     return Contacts(
-        body_a=np.array(a, dtype=np.int64),
-        body_b=np.array(b, dtype=np.int64),
+        body_a=a,
+        body_b=b,
         point_a=points,
         point_b=points,
         normal=points + normal,
-        gap=np.zeros(len(a)),
+        gap=np.zeros(len(pairs)),
         radius_a=np.array([radius_of(system.bodies[i]) for i in a]),
         radius_b=radius_b,
         at_wall=at_wall,

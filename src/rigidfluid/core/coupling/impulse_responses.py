@@ -47,7 +47,8 @@ def updated_model(
     now = Evaluation(_film_resistance(system, contacts)[bodies], twist.ravel()[velocities])
     inviscid, viscous, before = _remembered(known, velocities, d0)
     shared = len(np.unique(bodies)) > ALONE
-    changed = _changes(system, now, before, bodies, velocities % step.load.shape[1], d0)
+    arm = twist_arms(system)[bodies, velocities % step.load.shape[1]] / reaches(system)[0][bodies]
+    changed = _changes(now, before, bodies, arm / d0)
     fresh = ~(changed <= (CHANGED_SHARED if shared else CHANGED))
     if known is not None and not fresh.any() and np.array_equal(known.velocities, velocities):
         return known
@@ -58,14 +59,11 @@ def updated_model(
     return reduced_model(velocities, inviscid, viscous, d0, evaluation, shared)
 
 
-def _changes(
-    system: System, now: Evaluation, before: Evaluation, bodies: IntArray, components: IntArray, d0: float
-) -> FloatArray:
+def _changes(now: Evaluation, before: Evaluation, bodies: IntArray, reduced_time: FloatArray) -> FloatArray:
     """Relative change of the film resistance of each velocity's body, or of the body's way in a step over its radius,
-    whichever is more, (c,) [1]."""
-    reach, arm = reaches(system)[0], twist_arms(system)[bodies, components]
-    way = np.zeros(len(reach))
-    turned = np.abs(now.velocity - before.velocity) * arm / (d0 * reach[bodies])
+    whichever is more, (c,) [1]; a velocity times its ``reduced_time`` (c,) is that way."""
+    way = np.zeros(bodies.max() + 1)
+    turned = np.abs(now.velocity - before.velocity) * reduced_time
     np.maximum.at(way, bodies, np.where(np.isnan(turned), np.inf, turned))
     return np.maximum(np.abs(now.film_resistance - before.film_resistance) / before.film_resistance, way[bodies])
 
