@@ -231,7 +231,7 @@ def page(found: Sequence[Outcome], commit: str) -> str:
     lines = [
         "# Mutations",
         "",
-        f"Made on {date.today()} by `python tools/mutants.py --page docs/validation/mutants.md`, at commit {commit}, in"
+        f"Made on {date.today()} by `python tools/mutants.py --page docs/mutants.md`, at commit {commit}, in"
         f" {seconds / 60.0:.0f} CPU minutes.",
         "",
         "Each mutation in `tools/mutants.toml` changes one place of the sources: a sign, a factor, a term, an index, a",
