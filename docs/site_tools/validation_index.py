@@ -11,7 +11,7 @@ SUBJECTS = {
         "falling_disk": "A disk falls in a channel: velocity and times compared with four published computations",
         "two_disks": "Two light disks draft, kiss and tumble: case 5 of the paper",
         "drafting_kissing_tumbling": "Two heavier disks: path until the kiss compared with Glowinski et al. (2001)",
-        "settling_cylinder": "A cylinder leaves the wall of a channel: settled speed and drag compared with published ones",
+        "settling_cylinder": "A cylinder leaves the wall of a channel: settled speed and drag, compared with published",
         "ellipse_xia": "An ellipse settles in a channel: path and angle compared with Xia et al. (2009)",
         "ellipse_in_channel": "An ellipse in a narrow channel: how far mesh, step and law decide its swings",
         "hundred_disks": "A hundred disks settle: a movie, energies and the cost",
@@ -24,7 +24,7 @@ SUBJECTS = {
     "Flow past bodies and through channels": {
         "dfg_cylinder": "Steady flow past a cylinder: drag, lift and pressure of benchmark 2D-1",
         "dfg_unsteady": "Unsteady flow past a cylinder: drag and lift of benchmark 2D-3",
-        "vortex_induced": "A cylinder on a spring swings in its own vortices: amplitude compared with Shiels et al. (2001)",
+        "vortex_induced": "A cylinder on a spring in its own vortices: amplitude, compared with Shiels et al. (2001)",
         "wakes": "A fast disk and its wake: what finer cells behind it change",
         "window": "A short mesh goes with a disk in a long channel: compared with the whole channel",
         "walls": "Curved and oblique walls: orders of convergence against exact flows",

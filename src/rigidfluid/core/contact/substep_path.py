@@ -77,6 +77,8 @@ class SubstepPath:
                 wider = system.detection.widened(sight, dynamics, size) if count else sight
                 if wider is not sight:
                     sight, contacts = wider, wider.contacts_at(dynamics.pose)
+                if left > HOPELESS * sight.span:
+                    raise _too_fast(sight.span, size)
                 planned = min(left, sight.span)
                 free_flight, substep = self._next_plan(contacts, planned)
                 planned = min(planned, free_flight + MOST_ALIKE * substep)
@@ -130,6 +132,11 @@ def _refuse_overlaps(system: System, contacts: Contacts) -> None:
         return
     worst = int(np.argmin(contacts.gap))
     refuse_overlap(system, int(contacts.body_a[worst]), float(contacts.gap[worst]))
+
+
+def _too_fast(span: float, size: float) -> StepRejected:
+    found = f"bodies so fast that contacts can be foreseen for {span:.1e} of a step of {size:.1e}"
+    return StepRejected("the bodies", found, "slower bodies", "Look at velocities, gravity and units.")
 
 
 def _too_stiff(system: System, contacts: Contacts, part: float) -> StepRejected:

@@ -40,6 +40,8 @@ def check_model(model: Model) -> None:
     for number, placed in enumerate(model.mechanisms):
         _check_dimension(placed.mechanism, model.dimension, f"mechanism.{number}")
         refuse_invalid(placed.mechanism, f"mechanism.{number}")
+        if placed.name in [other.name for other in model.mechanisms[:number]]:
+            raise _doubled(f"mechanism.{number}.name", placed.name)
         _check_vectors(placed, model.dimension, f"mechanism.{number}")
     for number, body in enumerate(model.bodies):
         _check_dimension(body.shape, model.dimension, f"body.{number}")
@@ -159,7 +161,11 @@ def _check_names(model: Model) -> None:
         if count > 1:
             last = len(names) - 1 - names[::-1].index(name) if name in names else len(names)
             field = f"body.{last}.name" if last < len(model.bodies) else "mechanism.name"
-            raise SceneError(field, repr(name), "a name that no other body or surface has", "Rename it.")
+            raise _doubled(field, name)
+
+
+def _doubled(field: str, name: str) -> SceneError:
+    return SceneError(field, repr(name), "a name that no other body or surface has", "Rename it.")
 
 
 def _check_probes(model: Model) -> None:

@@ -432,6 +432,12 @@ def test_names_of_components_are_taken():
         scene(pair(), body=[ball])
 
 
+def test_two_of_one_name_are_refused():
+    one = pair(position=[0.5, 0.3])
+    with pytest.raises(SceneError, match=r"mechanism\.1\.name: found .it.; .* no other body"):
+        scene(one, one | {"position": [0.5, 0.7]})
+
+
 def test_components_that_overlap_are_refused_by_the_name_of_the_mechanism():
     with pytest.raises(SceneError, match=r"mechanism 'it'.*overlaps body 'it.right'"):
         build_system(scene(pair(length=0.09)))
