@@ -30,6 +30,14 @@ def blade(step: float, stepping: Stepping) -> Scene:
     return wet(contacts.repulsion(stepping, 1e-9, "normal", range=0.05), body, end=0.04, step=step)
 
 
+def corner_hit(step: float, stepping: Stepping) -> Scene:
+    """A square thrown onto the floor, a corner ahead."""
+    corners = [[-0.1, -0.1], [0.1, -0.1], [0.1, 0.1], [-0.1, 0.1]]
+    start = {"position": [0.5, 0.24], "velocity": [0.0, -5.0], "angle": 0.3}
+    body = {"type": "polygon", "points": corners, "density": 3.0} | start
+    return wet(contacts.repulsion(stepping, 1e-10, "normal", range=0.05), body, end=0.06, step=step)
+
+
 def stepped(scene: Scene, stepping: Stepping) -> Scene:
     """The scene with another way through contacts."""
     tables = scene.to_dict()
