@@ -41,9 +41,11 @@ class Kill:
     @property
     def orderly(self) -> bool:
         """Whether the command ended as the signal, or its own end, asks, and without a traceback of rigidfluid's;
-        before that is loaded, Python has one of its own."""
+        before that is loaded, Python has one of its own, and in the first tenth of a second a code, too."""
+        if "Traceback" in self.said and "rigidfluid" not in self.said:
+            return True
         codes = {-self.number, 0} if self.number == signal.SIGKILL else {-self.number, 130, 0}
-        return self.code in codes and not ("Traceback" in self.said and "rigidfluid" in self.said)
+        return self.code in codes and "Traceback" not in self.said
 
 
 def attack_by_kills(count: int, start: int) -> Iterator[Trial]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Iterable
 from datetime import date
 from operator import itemgetter
@@ -54,15 +53,9 @@ TITLES = {
 
 
 def write_attack_page(kept: Path = KEPT, page: Path = PAGE) -> Path:
-    """Write the page from the records of all kinds of attack, and the hashes of the sources; returns its file."""
+    """Write the page from the records of all kinds of attack; returns its file."""
     records = {kind: json.loads((kept / f"{kind}.json").read_text(encoding="utf-8")) for kind in TITLES}
     page.write_text("\n\n".join(_parts(records)) + "\n", encoding="utf-8")
-    if page == PAGE:
-        sys.path.append(str(ROOT / "docs"))
-        from page_tools.inputs import all_sources
-        from page_tools.page import write_inputs
-
-        write_inputs(PAGE.stem, all_sources())
     return page
 
 
