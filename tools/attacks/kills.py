@@ -40,9 +40,9 @@ class Kill:
 
     @property
     def orderly(self) -> bool:
-        """Whether the command ended as the signal, or its own end, asks, and without a traceback of rigidfluid's;
-        before that is loaded, Python has one of its own, and in the first tenth of a second a code, too."""
-        if "Traceback" in self.said and "rigidfluid" not in self.said:
+        """Whether the command ended as the signal, or its own end, asks, and without a traceback; before the command
+        line begins to load, in the first tenth of a second, Python has one of its own, and at times a code."""
+        if "Traceback" in self.said and "rigidfluid/cli" not in self.said:
             return True
         codes = {-self.number, 0} if self.number == signal.SIGKILL else {-self.number, 130, 0}
         return self.code in codes and "Traceback" not in self.said

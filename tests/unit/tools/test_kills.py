@@ -34,4 +34,4 @@ def test_other_results_are_seen(tmp_path: Path) -> None:
 def test_a_traceback_or_another_exit_code_is_no_orderly_end(number: int) -> None:
     assert Kill(number, 0.1, -number, "").orderly
     assert not Kill(number, 0.1, 1, "").orderly
-    assert not Kill(number, 0.1, -number, "Traceback (most recent call last): rigidfluid/…").orderly
+    assert not Kill(number, 0.1, -number, "Traceback (most recent call last): rigidfluid/cli/…").orderly
