@@ -9,6 +9,7 @@ import numpy as np
 from rigidfluid.core.contact.proximity import detect, interacting
 from rigidfluid.core.contact.substep import relative_velocity
 from rigidfluid.core.contact.tracked_pairs import TrackedPairs
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.motions import body_accelerations
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.detection import Sight
@@ -83,6 +84,12 @@ def _released(system: System, law: ForceLaw, dynamics: BodyDynamics, contacts: C
 
 def fastest_speed(system: System, dynamics: BodyDynamics, size: float) -> float:
     """Bound of the speed of any surface point in a step of this ``size`` [time], contacts apart [length/time]."""
+    return float(np.max(fastest_speeds(system, dynamics, size)))
+
+
+def fastest_speeds(system: System, dynamics: BodyDynamics, size: float) -> FloatArray:
+    """Bounds of the speeds of each body's surface points in a step of this ``size`` [time], contacts apart (n,)
+    [length/time]."""
     twist = dynamics.twist
     turning = system.arms * np.linalg.norm(twist.angular_velocity, axis=1)
-    return float(np.max(np.linalg.norm(twist.velocity, axis=1) + turning + size * dynamics.max_acceleration(size)))
+    return np.asarray(np.linalg.norm(twist.velocity, axis=1) + turning + size * dynamics.max_acceleration(size))

@@ -9,6 +9,7 @@ import numpy as np
 
 from rigidfluid.core.contact.body_step import BodyStep, add_wrench, arrived
 from rigidfluid.core.contact.contact_load import contact_load, damping_loss
+from rigidfluid.core.contact.look_ahead import fastest_speeds
 from rigidfluid.core.contact.proximity import refuse_overlap
 from rigidfluid.core.contact.substep import Plan, Reach, plan
 from rigidfluid.core.mechanics.wrenches import nothing
@@ -78,7 +79,7 @@ class SubstepPath:
                 if wider is not sight:
                     sight, contacts = wider, wider.contacts_at(dynamics.pose)
                 if left > HOPELESS * sight.span:
-                    raise _too_fast(sight.span, size)
+                    raise self._too_fast(sight.span)
                 planned = min(left, sight.span)
                 free_flight, substep = self._next_plan(contacts, planned)
                 planned = min(planned, free_flight + MOST_ALIKE * substep)
@@ -99,6 +100,12 @@ class SubstepPath:
             if count == MOST_SUBSTEPS and left > 0.0:
                 raise _too_stiff(system, contacts, part)
         return arrived(dynamics, impulse, dissipated, actuator_work, count)
+
+    def _too_fast(self, span: float) -> StepRejected:
+        fastest = int(np.argmax(fastest_speeds(self.system, self.dynamics, self.size)))
+        found = f"a speed with which contacts can be foreseen for {span:.1e} of a step of {self.size:.1e}"
+        subject = f"body {self.system.surfaces[fastest]}"
+        return StepRejected(subject, found, "slower bodies", "Look at velocities, gravity and units.")
 
     def planned(self, contacts: Contacts, span: float) -> Plan:
         """Free flight and substep of the next ``span`` [time], as the contacts need them."""
@@ -132,11 +139,6 @@ def _refuse_overlaps(system: System, contacts: Contacts) -> None:
         return
     worst = int(np.argmin(contacts.gap))
     refuse_overlap(system, int(contacts.body_a[worst]), float(contacts.gap[worst]))
-
-
-def _too_fast(span: float, size: float) -> StepRejected:
-    found = f"bodies so fast that contacts can be foreseen for {span:.1e} of a step of {size:.1e}"
-    return StepRejected("the bodies", found, "slower bodies", "Look at velocities, gravity and units.")
 
 
 def _too_stiff(system: System, contacts: Contacts, part: float) -> StepRejected:
