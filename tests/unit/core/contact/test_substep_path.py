@@ -213,6 +213,6 @@ def test_a_contact_that_no_step_can_follow_is_refused_at_once(monkeypatch):
 
 def test_bodies_too_fast_for_contacts_to_be_foreseen_are_refused_at_once():
     """Not after a hundred thousand looks ahead in each halving of the step."""
-    with pytest.raises(StepError, match=r"body body0 .* a speed with which contacts can be foreseen for .* of a step") as error:
+    with pytest.raises(StepError, match=r"body body0 .* a speed with which contacts can be foreseen for .*") as error:
         rigidfluid.run(dry({}, step=1e-3, end=1.0, gravity=1e30))
     assert "units" in error.value.remedy
