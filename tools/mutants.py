@@ -47,7 +47,7 @@ PRELOADED = (
 WANTED = 0.95
 """Share of mutations that must be killed."""
 
-PATIENCE = 60
+PATIENCE = 150
 """CPU seconds after which tests are ended."""
 
 ASLEEP = 30
