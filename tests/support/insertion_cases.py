@@ -88,6 +88,12 @@ CASES = {
 }
 
 
+class Peanut(FacetBody):
+    """A body of facets that is no plug-in."""
+
+    name = "peanut"
+
+
 def peanut() -> FacetBody:
     """Two balls and a box in one, of facets with sharp edges."""
     from netgen import occ
@@ -98,7 +104,7 @@ def peanut() -> FacetBody:
     vertices = netgen.Elements2D().NumPy()["nodes"][:, :3].astype(np.int64) - 1
     used, compact = np.unique(vertices, return_inverse=True)
     facets = Facets(netgen.Coordinates()[used].copy(), compact.reshape(-1, 3), np.zeros(len(vertices), dtype=np.int64))
-    return FacetBody(PartOptions(), facets, "peanut")
+    return Peanut(PartOptions(), facets, "peanut")
 
 
 def peanut_in_a_tube() -> tuple[Pose, Domain]:

@@ -13,6 +13,9 @@ halved: it would lose several times as much, since its fluid answers to the impa
 HALVINGS = 5
 """An impact halves a step so many times at most: it may last a millionth of it."""
 
+YOUNGEST = 4
+"""Least age of an impact over the step that is taken then."""
+
 
 def is_unresolved(state: State, path: BodyStep, level: int) -> bool:
     """Whether a step of this ``level`` is to be halved for what an impact on its ``path`` would lose.
@@ -24,13 +27,14 @@ def is_unresolved(state: State, path: BodyStep, level: int) -> bool:
 
 
 def level_after_impact(state: State, clock: Clock, level: int) -> int:
-    """The first level, from ``level`` on, of a step not longer than the one before or half the time since an impact.
+    """The first level, from ``level`` on, of a step not longer than the one before or a quarter of the time since an
+    impact.
 
     The layer that an impact leaves in the fluid decays over times as long as it is old.
     """
     if state.impact is None or state.level is None:
         return level
     age = state.tick - state.impact
-    while level < state.level and 2 * clock.ticks(level) > age:
+    while level < state.level and YOUNGEST * clock.ticks(level) > age:
         level += 1
     return level

@@ -74,8 +74,16 @@ BACKENDS = f"""
         name = "faulty"
 
         def advance(self, fluid, mesh, step):
-            print("what led to it", flush=True)
             raise ZeroDivisionError("no number")
+
+    class Unexpected(Dry):
+        name = "unexpected"
+
+        def __getattribute__(self, name):
+            if name == "advance":
+                print("what led to it", flush=True)
+                raise KeyError("nobody")
+            return super().__getattribute__(name)
 
     class Dying(Dry):
         name = "dying"
@@ -95,7 +103,7 @@ BACKENDS = f"""
 
     @hookimpl
     def rigidfluid_fluid_backends():
-        return [Pushed, Failing, Faulty, Dying, Missing, Thick]
+        return [Pushed, Failing, Faulty, Unexpected, Dying, Missing, Thick]
 """
 Install = Callable[..., Path]
 
@@ -460,7 +468,7 @@ def test_a_run_that_ends_in_no_numbers(started: list[tuple[str, bool]], tmp_path
     result = compare_command(BOUNCE, *options("dry", "pushed", settings=(*SHORT, "fluid.push=-1.0")), "--out", tmp_path)
     assert result.exit_code == 1
     found = json.loads((tmp_path / "comparison.json").read_text())
-    assert "body right_disk at time 0: found a force of nan" in found["runs"][1]["error"]
+    assert "fluid backend 'pushed', advance at time 0: found force nan" in found["runs"][1]["error"]
     assert found["pairs"] == []
 
 
@@ -487,13 +495,14 @@ def test_time_that_a_run_has_reached(text: str | None, time: float, tmp_path: Pa
 
 def test_processes_of_their_own(tmp_path: Path) -> None:
     """A failure, an error that nobody expected and a death, with a run that succeeds."""
-    backends = ["dry", "failing", "faulty", "dying"]
+    backends = ["dry", "failing", "faulty", "unexpected", "dying"]
     comparison, _ = compare(BOUNCE, backends, SHORT, tmp_path)
     assert [run.backend for run in comparison.complete] == ["dry"]
     errors = {run.backend: run.error for run in comparison.failed}
     assert errors["failing"].startswith("the step: found a fault")
-    assert errors["faulty"] == "ZeroDivisionError: no number (more in faulty.log)"
-    assert "what led to it" in (tmp_path / "faulty.log").read_text()
+    assert errors["faulty"].startswith("fluid backend 'faulty', advance: found ZeroDivisionError: no number")
+    assert errors["unexpected"] == "KeyError: 'nobody' (more in unexpected.log)"
+    assert "what led to it" in (tmp_path / "unexpected.log").read_text()
     assert errors["dying"] == f"ended by a signal: {signal.strsignal(signal.SIGKILL)}"
 
 
