@@ -20,7 +20,7 @@ QUESTION = "energy-error"
 _ALLOWED = 0.05
 """Greatest error of an impact's energy that is allowed, over that energy [1]."""
 _LAYER_FACTOR = 1.0
-"""Empirical: what a falling disk was seen to lose with four steps is .7 to 2.1 times the estimate with it."""
+"""Empirical: what a falling disk was seen to lose with four steps is .7 to 1.5 times the estimate with it."""
 _FRICTION = 0.1
 """Empirical: friction on the bodies' path, which a run goes by, over what an impact loses [1]."""
 
