@@ -82,5 +82,5 @@ def test_a_run_goes_through_an_impact_by_short_steps(run):
     times = run.history.energy["time"]
     sizes, speed = np.diff(times), run.history.bodies["vy"]
     hit = int(np.flatnonzero((speed[:-1] < 0.0) & (speed[1:] > 0.0))[0])
-    assert sizes[hit] <= STEP / 16.0
+    assert sizes[hit] == pytest.approx(STEP / 16.0)
     assert sizes[-1] == pytest.approx(STEP / 2.0)
