@@ -3,7 +3,7 @@
     python tools/attack.py KIND [--count N] [--seed S]
 
 KIND is one of `scenes`, `overrides`, `geometry`, `checkpoints`, `kills`, `soak`; `page` writes
-docs/validation/attack.md from what is kept of them all in out/attack. Exits with 1 where something did not hold. Needs
+docs/attack.md from what is kept of them all in out/attack. Exits with 1 where something did not hold. Needs
 the extra `test`, and a system with fork and /proc.
 """
 

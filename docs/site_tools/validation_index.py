@@ -60,9 +60,6 @@ SUBJECTS = {
         "settling_sphere": "Steps in 3D: iterations, time and memory",
         "parallel": "Many balls on several processes",
     },
-    "Trust": {
-        "attack": "Hostile scenes and settings, damaged files and checkpoints, kills: what was tried, and what held",
-    },
 }
 HEAD = """# Validation
 

@@ -12,7 +12,7 @@ from typing import Any
 from attacks.trials import KEPT
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGE = ROOT / "docs" / "validation" / "attack.md"
+PAGE = ROOT / "docs" / "attack.md"
 
 MEANINGS = {
     "scenes": """

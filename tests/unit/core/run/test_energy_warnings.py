@@ -85,10 +85,10 @@ PAIRS = {
         lambda step: disk_in_box(
             step,
             0.4,
-            {"density": 2.0, "position": [0.7, 0.4], "velocity": [0.0, -1.0]},
+            {"density": 2.0, "position": [0.7, 0.4], "velocity": [0.0, -2.0]},
             contact={"law": "normal", "range": 0.05, "epsilon": 1e-3},
         ),
-        *(0.2, 0.02, "vanished"),
+        *(0.3, 0.02, "vanished"),
     ),
 }
 
