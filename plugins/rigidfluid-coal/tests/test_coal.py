@@ -112,6 +112,7 @@ def test_other_shapes_are_refused() -> None:
         name = "cross"
         radius = None  # type: ignore[assignment]
         volume = bounding_radius = 1.0  # type: ignore[assignment]
+        unit_inertia = np.eye(1)  # type: ignore[assignment]
 
     with pytest.raises(SceneError, match=r'body\.0 of type "cross".*brute_force'):
         CoalDetector(PartOptions(), [Cross(SphereOptions(radius=1.0), 2)], [])
