@@ -17,6 +17,8 @@ OUTSIDE = {
     "project/architecture": "ARCHITECTURE.md",
     "project/changes": "CHANGELOG.md",
     "project/contributing": "CONTRIBUTING.md",
+    "project/security": "SECURITY.md",
+    "project/third_party": "THIRD_PARTY.md",
     **{f"packages/{name}": readme for name, readme in READMES.items()},
 }
 """Pages of the site, and the files of the repository that they show; a page's own file says only which."""
