@@ -5,11 +5,13 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from types import NoneType
 from typing import Any, TypeVar, final
 
 import numpy as np
 
-from rigidfluid.errors import RigidfluidError, SharedInterrupt
+from rigidfluid.core.geometry.wrong import Wrong
+from rigidfluid.errors import PluginError, RigidfluidError, SharedInterrupt
 
 T = TypeVar("T")
 ROOT = 0
@@ -92,6 +94,10 @@ class Ranks(ABC):
         try:
             yield
         except RigidfluidError as raised:
+            cause = raised.__cause__
+            if self.size > 1 and isinstance(raised, PluginError) and not isinstance(cause, Wrong | NoneType):
+                cause.add_note(str(raised))  # in midst of what a part does, others may wait for this rank
+                raise cause from None
             error = raised
         first = next((each for each in self.allgather(error) if each is not None), None)
         if error is not None:

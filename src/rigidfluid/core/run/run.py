@@ -14,7 +14,7 @@ from rigidfluid.core.output.history import History
 from rigidfluid.core.run.process import give_back_memory, one_openblas_thread, remembered_interrupt
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.run.summary import warnings_of
-from rigidfluid.errors import OutputError, PluginError, RigidfluidError, RunWarning, SharedInterrupt
+from rigidfluid.errors import OutputError, RigidfluidError, RunWarning, SharedInterrupt
 
 __all__ = ["Progress", "run", "simulate"]
 
@@ -87,7 +87,8 @@ def simulate(
                 simulation.observe(lambda _: interrupt_if_lost())
                 simulation.go()
         except BaseException as error:
-            if simulation.alone or _reaches_all_ranks(error):
+            # others need not reach all ranks
+            if simulation.alone or isinstance(error, (RigidfluidError, SharedInterrupt)):
                 with suppress(OutputError):  # a full disk has been reported once
                     simulation.finish(status=_status(error))
                     finished(simulation.history)
@@ -97,14 +98,6 @@ def simulate(
         simulation.system.backend.forget()  # much memory, which the next run in this process may want
         give_back_memory()
     return simulation.history
-
-
-def _reaches_all_ranks(error: BaseException) -> bool:
-    """Whether all processes of a run raise the error; raises what a part raised on one of them, which ends all."""
-    if isinstance(error, PluginError) and error.__cause__ is not None:
-        error.__cause__.add_note(str(error))
-        raise error.__cause__ from None
-    return isinstance(error, (RigidfluidError, SharedInterrupt))
 
 
 @dataclass(frozen=True, slots=True)
