@@ -21,7 +21,7 @@ extensions = [
     "site_tools.outside",
     "site_tools.docstrings",
 ]
-exclude_patterns = ["validation/inputs", "site_tools", "page_tools", "pages"]
+exclude_patterns = ["site_tools", "page_tools", "pages"]
 
 html_theme = "furo"
 html_static_path = ["site_tools/static"]

@@ -43,6 +43,16 @@ class Kind(Generic[P]):
         """Name of the kind."""
         return self.interface.kind
 
+    @property
+    def table(self) -> str:
+        """Table of a scene that names it."""
+        return self.field.rpartition(".")[0]
+
+    @property
+    def key(self) -> str:
+        """Key of that table by which it does."""
+        return self.field.rpartition(".")[2]
+
 
 FLUID_BACKEND = Kind("rigidfluid_fluid_backends", FluidBackend, "fluid.backend")  # type: ignore[type-abstract]
 DETECTOR = Kind("rigidfluid_detectors", Detector, "contact.detector")  # type: ignore[type-abstract]

@@ -10,6 +10,7 @@ from rigidfluid.core.nested.part_options import own_options, read_options
 from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.scene import (
     BodyTable,
+    ContactTable,
     DomainTable,
     FluidTable,
     InteractionTable,
@@ -31,35 +32,34 @@ from rigidfluid.registry import (
     Registry,
 )
 
-_NAMED: tuple[tuple[str, str, Kind[Any], Any], ...] = (
-    ("fluid", "backend", FLUID_BACKEND, FluidTable),
-    ("domain", "type", DOMAIN, DomainTable),
-    ("body", "type", BODY, BodyTable),
-    ("mechanism", "type", MECHANISM, MechanismTable),
-    ("joint", "type", JOINT, JointTable),
-    ("contact", "detector", DETECTOR, None),
-    ("contact", "law", FORCE_LAW, None),
-    ("interaction", "law", FORCE_LAW, InteractionTable),
-    ("mesh.field", "type", SIZE_FIELD, SizeFieldTable),
+PART_TABLES: tuple[tuple[str, Kind[Any], Any], ...] = (
+    ("fluid", FLUID_BACKEND, FluidTable),
+    ("body", BODY, BodyTable),
+    ("mechanism", MECHANISM, MechanismTable),
+    ("contact", DETECTOR, ContactTable),
+    ("contact", FORCE_LAW, ContactTable),
+    ("interaction", FORCE_LAW, InteractionTable),
+    ("domain", DOMAIN, DomainTable),
+    ("joint", JOINT, JointTable),
+    ("mesh.field", SIZE_FIELD, SizeFieldTable),
 )
-"""Places of tables that name a part, the key that does it, the part's kind, and the table's own keys; none where
-several parts have keys in one table."""
+"""Places of tables that name a part, the part's kind, and the model of the table's own keys."""
 
 
 def check_part_tables(data: Mapping[str, Any], registry: Registry) -> None:
     """Raise SceneError or PluginError for parts that are not there, and for keys that parts do not know or refuse."""
     with all_told() as ask:
-        for place, key, kind, model in _NAMED:
+        for place, kind, model in PART_TABLES:
             for at, table in _tables(data, place):
-                name = table.get(key, model.model_fields[key].default if model else None)
+                name = table.get(kind.key, model.model_fields[kind.key].default)
                 if isinstance(name, str) and name != "auto":
-                    part = ask(registry.find, kind, name, f"{at}.{key}")
+                    part = ask(registry.find, kind, name, f"{at}.{kind.key}")
                     if part is not None:
                         ask(_check_table, part, at, table, model)
 
 
 def _check_table(part: type[Part], at: str, table: Mapping[str, Any], model: Any) -> None:
-    if model is None:
+    if model is ContactTable:  # others have keys there, too
         own_options(part, table, at)
     else:
         own = fields_by_key(model)

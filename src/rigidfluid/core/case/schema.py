@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from rigidfluid.core.case.part_tables import PART_TABLES
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.registry import (
     BODY,
@@ -15,20 +16,9 @@ from rigidfluid.registry import (
     MECHANISM,
     SIZE_FIELD,
     Entry,
-    Kind,
     Registry,
 )
 
-_TABLES: dict[Kind[Any], tuple[str, ...]] = {
-    FLUID_BACKEND: ("FluidTable",),
-    BODY: ("BodyTable",),
-    MECHANISM: ("MechanismTable",),
-    DETECTOR: ("ContactTable",),
-    FORCE_LAW: ("ContactTable", "InteractionTable"),
-    DOMAIN: ("DomainTable",),
-    JOINT: ("JointTable",),
-    SIZE_FIELD: ("SizeFieldTable",),
-}
 # The parts that a table means where it names none.
 _UNNAMED = {
     FLUID_BACKEND: ("scikit-fem",),
@@ -47,22 +37,21 @@ def json_schema() -> dict[str, Any]:
     others. Raises PluginError if a plug-in is not usable."""
     schema = Scene.model_json_schema()
     registry = Registry.load()
-    for kind, tables in _TABLES.items():
-        for name in tables:
-            key = kind.field.rpartition(".")[2]
-            schema["$defs"][name]["properties"][key]["enum"] = ["auto"] * (kind is DETECTOR) + registry.names(kind)
+    for _, kind, table in PART_TABLES:
+        named = schema["$defs"][table.__name__]["properties"][kind.key]
+        named["enum"] = ["auto"] * (kind is DETECTOR) + registry.names(kind)
     for entry in registry.entries:
         _add_part(schema["$defs"], entry)
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
 
 def _add_part(definitions: dict[str, Any], entry: Entry) -> None:
-    key = entry.kind.field.rpartition(".")[2]
+    key = entry.kind.key
     condition: dict[str, Any] = {"properties": {key: {"const": entry.name}}}
     if entry.name not in _UNNAMED[entry.kind]:
         condition["required"] = [key]
-    for name in _TABLES[entry.kind]:
-        table = definitions[name]
+    for model in (model for _, kind, model in PART_TABLES if kind is entry.kind):
+        table = definitions[model.__name__]
         table.pop("additionalProperties", None)
         table["unevaluatedProperties"] = False
         table.setdefault("allOf", []).append({"if": condition, "then": _options(definitions, entry)})

@@ -19,6 +19,7 @@ from rigidfluid.core.geometry.facets import Facets
 from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.geometry.surface import Surface
 from rigidfluid.core.geometry.wrong import Wrong
+from rigidfluid.core.model.contact_results import refuse_odd
 from rigidfluid.core.model.types import Contacts, Pose, Twist
 
 _ROUNDING = 1e-9
@@ -137,7 +138,5 @@ def energies(answer: Any, part: Any, contacts: Contacts) -> None:
 
 def contacts(answer: Any, part: Any, pose: Pose, mesh: Any, reach: float) -> None:
     """Refuse contacts of surfaces that there are not, or twice the same ones, and points that are not a gap apart."""
-    from rigidfluid.core.model.contact_results import refuse_odd
-
     refuse_others(answer, Contacts)
     refuse_odd(answer, pose, part.bodies, part.walls)

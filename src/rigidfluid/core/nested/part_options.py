@@ -17,7 +17,7 @@ from rigidfluid.registry import KINDS, Kind, Registry
 
 S = TypeVar("S", bound=SpatialPart)
 
-_PLACELESS = tuple(f"{kind.field.rpartition('.')[0]}." for kind in KINDS)
+_PLACELESS = tuple(f"{kind.table}." for kind in KINDS)
 """First words of a key in errors of parts, which do not know the place of their table."""
 
 
