@@ -8,8 +8,9 @@ from pathlib import Path
 import rigidfluid
 from attacks.hostile_scenes import SCENES
 from rigidfluid.api import Scene
+from rigidfluid.core.output import run_files
 
-TABLES = ("bodies.csv", "contacts.csv", "joints.csv", "energy.csv", "steps.csv", "probes.csv")
+TABLES = tuple(f"{name}.csv" for name in run_files.TABLES)
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from rigidfluid.core.output.energy_flows import (
     creation_and_loss,
     energy_at_hand,
     lost_by_cause,
+    lost_energy,
     round_off,
 )
 
@@ -103,7 +104,7 @@ class EnergyWarning:
 def energy_account(energy: Table) -> EnergyAccount:
     """The account of a table of energies by column, (s,) each [energy], a row per state from the start on."""
     put_in, at_hand = _put_in(energy), energy_at_hand(energy)
-    lost, friction = energy["residual"] + energy["transfer_loss"], energy["path_friction"]
+    lost, friction = lost_energy(energy), energy["path_friction"]
     whole = max(put_in, at_hand)
     return EnergyAccount(
         at_hand,

@@ -46,7 +46,7 @@ class Flow:
 def creation_and_loss(energy: Table, at_hand: float) -> tuple[Flow, Flow]:
     """Energy that came from nowhere and energy that vanished, by stretches in which no more is dissipated than was
     ``at_hand``; of what vanished without what friction of impacts explains."""
-    lost, dissipated = energy["residual"] + energy["transfer_loss"], _dissipated(energy)
+    lost, dissipated = lost_energy(energy), _dissipated(energy)
     floor, sums = round_off(energy), lost_by_cause(energy)
     changes = {name: _changes(values, floor) for name, values in sums.items()}
 
@@ -70,11 +70,17 @@ def energy_at_hand(energy: Table) -> float:
     """
     above_lowest = energy["contact"] - min(energy["contact"].min(), 0.0)
     stored = energy["kinetic"] + above_lowest + energy["gravity"].max() - energy["gravity"]
-    accounted = stored + energy["residual"] + energy["transfer_loss"]
+    accounted = stored + lost_energy(energy)
     dissipated = _dissipated(energy)
     steps = SHORTEST * float(np.diff(dissipated).max(initial=0.0))
     found = max(float(np.minimum(stored, accounted).max()), min(steps, float(dissipated[-1])))
     return found if found > round_off(energy) else float(np.maximum(stored, accounted).max())
+
+
+def lost_energy(energy: Table) -> FloatArray:
+    """Energy that has vanished until each state (s,), what re-meshing took included; below zero of what came from
+    nowhere."""
+    return np.asarray(energy["residual"] + energy["transfer_loss"])
 
 
 def lost_by_cause(energy: Table) -> dict[str, FloatArray]:

@@ -13,7 +13,7 @@ PICTURES = (
 )
 """Names of the pictures in the report of a run, each a PNG or SVG file."""
 
-_TABLES = {
+TABLES = {
     "bodies": "a row per body, components of mechanisms among them, and a row per mechanism",
     "contacts": "a row per contact within the longest range of the laws",
     "joints": "a row per joint, and per body that is held or on springs",
@@ -21,6 +21,7 @@ _TABLES = {
     "steps": "size, error with `time.tolerance`, unknowns, new meshes",
     "probes": "the fluid at the points of `output.probes`",
 }
+"""Names of a run's tables, and what is in each."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,7 @@ class Files:
 
 
 FILES = (
-    *(Files(f"`{name}.csv`", rf"{name}\.csv", "each step", content) for name, content in _TABLES.items()),
+    *(Files(f"`{name}.csv`", rf"{name}\.csv", "each step", content) for name, content in TABLES.items()),
     Files(
         "`fields.pvd`, `fields/*.vtu`",
         r"fields\.pvd(\.part)?|fields/\d{6,}(\.\d+)?\.p?vtu",
