@@ -65,6 +65,7 @@ HEAD = """# Validation
 
 Made by `python docs/make_gallery.py`; a test fails where it is out of date. Each page behind a picture has the tables,
 their sources, and how far the results are from them. They are made from runs by `make validate`.
+[The main results in figures](figures.md), each with its reference and the test that holds it.
 """
 
 
@@ -76,7 +77,7 @@ def validation_index() -> str:
         raise ValueError(f"found validation pages {sorted(wrong)}; allowed is each page once in SUBJECTS")
     sections = "\n".join(section(subject, lines) for subject, lines in SUBJECTS.items())
     tree = "\n".join(f"validation/{name}" for name in listed)
-    return f"{HEAD}\n{sections}\n```{{toctree}}\n:hidden:\n\n{tree}\n```\n"
+    return f"{HEAD}\n{sections}\n```{{toctree}}\n:hidden:\n\nfigures\n{tree}\n```\n"
 
 
 def section(subject: str, lines: dict[str, str]) -> str:

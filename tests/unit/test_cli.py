@@ -313,6 +313,7 @@ def test_names_are_no_markup(name: str) -> None:
     assert name in result.stdout
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", [r"$\\frac$", "$x^{2$"])
 def test_names_are_no_formulas(name: str, tmp_path: Path) -> None:
     changes = ("--set", f'body.0.name="{name}"', "--set", "time.end=0.03")

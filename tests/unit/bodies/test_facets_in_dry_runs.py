@@ -59,6 +59,7 @@ def test_a_square_dropped_on_a_corner_tips_over_and_keeps_its_energy(stepping: s
     assert np.ptp(energy) < share * most
 
 
+@pytest.mark.long
 def test_a_square_in_a_damped_contact_comes_to_lie_flat() -> None:
     law = {"law": "spring-dashpot", "range": 0.02, "stiffness": 40.0, "restitution": 0.2}
     scene = dry_scene(law, block(BOX, [0.5, 0.16], 0.2), end=3.0, step=0.01, gravity=[0, -1.0])
@@ -70,6 +71,7 @@ def test_a_square_in_a_damped_contact_comes_to_lie_flat() -> None:
     assert np.ptp(lying) < 1e-3 * lying.mean()
 
 
+@pytest.mark.long
 def test_a_pile_of_several_shapes_keeps_its_energy() -> None:
     bodies = [
         block((0.15 * np.array(L_SHAPE)).tolist(), [0.3, 0.3], 0.3),
@@ -97,6 +99,7 @@ def gear(teeth: int) -> list[list[float]]:
     return [[radius * float(np.cos(angle)), radius * float(np.sin(angle))] for angle, radius in turned]
 
 
+@pytest.mark.long
 def test_gears_keep_their_energy_in_implicit_steps_of_any_length() -> None:
     """A tooth meets several sides, and a step that loses sight of one, or turns too far for one force, is shortened."""
     law = {"law": "normal", "range": 0.02, "epsilon": 1e-7, "stepping": "implicit"}

@@ -145,6 +145,7 @@ def test_separate_pairs_whose_bounding_balls_overlap(dimension: int) -> None:
     assert found > 15
 
 
+@pytest.mark.long
 @DIMENSIONS
 @pytest.mark.parametrize("apart", [(0.1, 0.6), (0.0, 0.02), (0.0, 0.0)])
 def test_overlapping_pairs_against_the_shortest_of_many_ways_apart(dimension: int, apart: tuple[float, float]) -> None:

@@ -35,6 +35,7 @@ def scene(body, contact, backend="scikit-fem", **more):
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("detector", ["narrow_band", "fast_marching"])
 def test_a_disk_is_held_off_a_wall_as_by_the_closed_form(detector):
     marched = run(scene(DISK, {"detector": detector, **LAW}))

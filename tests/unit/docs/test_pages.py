@@ -68,8 +68,8 @@ def test_every_hook_is_explained() -> None:
             assert f"`{word}`" in page
 
 
-def test_every_built_in_part_is_in_the_readme() -> None:
-    page = text("README.md")
+def test_every_built_in_part_is_among_the_features() -> None:
+    page = text("docs/features.md")
     built_in = [entry.name for entry in Registry.load().entries if entry.origin.startswith("rigidfluid ")]
     assert [name for name in built_in if f"`{name}`" not in page] == []
 

@@ -1,4 +1,4 @@
-"""Pages of docs/validation are whole, and the README says what they say."""
+"""Pages of docs/validation are whole, and the README and docs/figures.md say what they say."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from page_tools.quotes import disagreements, quotes, unmarked
 from page_tools.record import Record, read_record
 
 NAMES = sorted(path.stem for path in PAGES.glob("*.md"))
-README = (ROOT / "README.md").read_text(encoding="utf-8")
+QUOTING = [(ROOT / name).read_text(encoding="utf-8") for name in ("README.md", "docs/figures.md")]
 TABLE = """
 | case | step | speed | off |
 | --- | --- | --- | --- |
@@ -26,10 +26,10 @@ TABLE = """
 """
 
 
-def measured() -> list[str]:
-    """The cells of what is measured in the README's table of results."""
-    table = README.partition("| case | figure | measured |")[2].partition("\n\n")[0]
-    return [line.split("|")[3] for line in table.splitlines()[2:]]
+def rows(text: str) -> list[list[str]]:
+    """The rows of a text's table of results: case, figure, what is measured, reference."""
+    table = text.partition("| case | figure | measured |")[2].partition("\n\n")[0]
+    return [line.split("|")[1:5] for line in table.splitlines()[2:]]
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -110,13 +110,12 @@ def test_there_are_quick_pages() -> None:
     assert {"walls", "lammps", "dfg_cylinder"} <= set(quick())
 
 
-def test_every_measured_figure_of_the_readme_names_its_page() -> None:
-    assert len(measured()) > 10
-    assert {cell: found for cell in measured() if (found := unmarked(cell))} == {}
-
-
-def test_the_readme_says_what_the_pages_say() -> None:
-    assert list(disagreements(README)) == []
+@pytest.mark.parametrize("text", QUOTING, ids=("README", "figures"))
+def test_every_measured_figure_names_its_page_and_is_what_that_says(text: str) -> None:
+    measured = [cell for _, _, cell, _ in rows(text)]
+    assert len(measured) >= 10
+    assert {cell: found for cell in measured if (found := unmarked(cell))} == {}
+    assert list(disagreements(text)) == []
 
 
 @pytest.mark.parametrize(
@@ -150,26 +149,25 @@ def test_a_figure_without_a_mark_is_seen() -> None:
 
 
 NEAR = 0.02
-"""Largest distance of a measured figure of the README from its reference, relative."""
+"""Largest distance of a measured figure from its reference, relative."""
 
 
-def far_from_reference(row: str) -> list[tuple[float, float]]:
-    """Figures of a row that are not near the reference beside them: the first one, or one each; a 0 tells nothing."""
-    *_, figures, reference, _, _ = row.split("|")
+def far_from_reference(figures: str, reference: str) -> list[tuple[float, float]]:
+    """Figures that are not near the reference beside them: the first one, or one each; a 0 tells nothing."""
     told = [float(number) for number in re.findall(r"(?<![\w.])\d*\.?\d+(?![\w.])", re.sub(r"\(.*?\)", "", reference))]
     found = [quote.value for quote in quotes(figures)]
     pairs = zip(found, told if len(told) == len(found) else told[:1], strict=False)
     return [(one, other) for one, other in pairs if other and abs(one / other - 1.0) > NEAR]
 
 
-def test_the_readme_s_figures_are_near_their_references() -> None:
-    table = README.partition("| case | figure | measured |")[2].partition("\n\n")[0]
-    assert [far for row in table.splitlines()[2:] for far in far_from_reference(row)] == []
+@pytest.mark.parametrize("text", QUOTING, ids=("README", "figures"))
+def test_figures_are_near_their_references(text: str) -> None:
+    assert [far for _, _, figures, reference in rows(text) for far in far_from_reference(figures, reference)] == []
 
 
 def test_a_figure_far_from_its_reference_is_seen() -> None:
-    row = "| a | lift | .4809<!-- a: b → c -->, .9<!-- a: d → c --> s | {} | `tests/a.py` |"
-    assert far_from_reference(row.format(".4779, .91 (John 2004)")) == []
-    assert far_from_reference(row.format(".4379, .91")) == [(0.4809, 0.4379)]
-    assert far_from_reference(row.format(".4779; .8; .7 (others)")) == []
-    assert far_from_reference(row.format("0")) == []
+    figures = ".4809<!-- a: b → c -->, .9<!-- a: d → c --> s"
+    assert far_from_reference(figures, ".4779, .91 (John 2004)") == []
+    assert far_from_reference(figures, ".4379, .91") == [(0.4809, 0.4379)]
+    assert far_from_reference(figures, ".4779; .8; .7 (others)") == []
+    assert far_from_reference(figures, "0") == []

@@ -288,6 +288,7 @@ def test_vertices_of_a_curved_wall_are_held() -> None:
     assert held[np.unique(mesh.facets)].all()
 
 
+@pytest.mark.long
 def test_a_disk_bounces_in_a_dry_dish_and_keeps_its_energy() -> None:
     history = run(built(DISK, fluid=DRY, time={"end": 2.0, "step": 0.001}, output={"every": 2.0}))
     centres = np.column_stack([history.bodies["x"], history.bodies["y"]])

@@ -39,6 +39,7 @@ def test_a_drawing_that_ends_its_reader_is_refused(drawn: Path) -> None:
         Cad(CadOptions(file=str(drawn), faces={"wall": 1}), 3)
 
 
+@pytest.mark.long
 def test_a_drawing_that_is_read_for_ever_is_refused(drawn: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """So is half of it."""
     monkeypatch.setattr(trial, "SECONDS", 10.0)
@@ -56,6 +57,7 @@ def test_a_whole_drawing_is_tried_once(drawn: Path, monkeypatch: pytest.MonkeyPa
     assert len(tried) == 1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "text",
     [

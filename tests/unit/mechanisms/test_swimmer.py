@@ -25,6 +25,7 @@ def forward():
     return advances(2)
 
 
+@pytest.mark.long
 def test_a_cycle_takes_it_on_by_29_hundredths_of_a_radius(forward):
     """0.2910 by quasi-static resistances; the first cycle starts from rest, and its bodies have some inertia."""
     (first, second), it = forward
@@ -34,6 +35,7 @@ def test_a_cycle_takes_it_on_by_29_hundredths_of_a_radius(forward):
     assert abs(it.state.ledger.relative_residual) < 1e-3
 
 
+@pytest.mark.long
 def test_the_order_of_its_strokes_says_which_way_it_swims(forward):
     """Mirrored, the first cycle is the same to the mesh's own asymmetry."""
     (there, _), _ = forward

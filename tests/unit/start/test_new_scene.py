@@ -58,6 +58,7 @@ def test_what_is_written_passes_its_check_without_a_warning(flags: tuple[object,
     assert "Units: " in lines[0]
 
 
+@pytest.mark.long
 def test_units_change_numbers_and_not_the_run() -> None:
     runs = [check(scene) for scene in map(_made, ("cm", "m", "mm"))]
     weights = [report.bodies[0].submerged_weight[1] for report in runs]

@@ -14,6 +14,7 @@ from rigidfluid.core.run.run import run
 from rigidfluid.errors import SceneError
 
 
+@pytest.mark.long
 def test_a_disk_goes_through_a_slippery_throat_and_the_energy_balance_closes() -> None:
     """Of second order in the step; and walls without slip hold the fluid back."""
     coarse, fine = (run(throat(SLIPPERY, step=step)) for step in (0.04, 0.02))

@@ -68,6 +68,7 @@ def test_both_levels_are_carried_over(spinning):
     assert before.ledger.kinetic - after.ledger.kinetic == pytest.approx(lost)
 
 
+@pytest.mark.long
 def test_a_new_mesh_in_a_gap_that_closes_keeps_the_energy_of_both_levels():
     """The mesh squeezed with the gap and the new one differ in the disk's added mass, by per cents of the energy."""
     near = {"position": [1.0, 0.325], "velocity": [0.0, -10.0], "density": 3.0}

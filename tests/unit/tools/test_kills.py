@@ -15,6 +15,7 @@ from attacks.small_runs import differences
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals there")
 
 
+@pytest.mark.long
 def test_a_killed_run_comes_to_the_same_results() -> None:
     trials = list(attack_by_kills(4, start=28))
     assert len(trials) == 4

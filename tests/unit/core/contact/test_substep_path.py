@@ -88,6 +88,7 @@ def tilted(gravity):
     return energy(bodies, mass, mass * (0.1**2 + 0.05**2) / 4, gravity)[free], spins
 
 
+@pytest.mark.long
 def test_a_tilted_ellipse_keeps_its_energy():
     energies, spins = tilted(10.0)
     assert np.abs(spins).max() > 5.0

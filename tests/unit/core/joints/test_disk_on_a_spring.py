@@ -25,6 +25,7 @@ def stokes_frequency() -> complex:
     return complex(newton(residual, np.sqrt(STIFFNESS / (DISPLACED * (DENSITY + 1.0))) + 0j))
 
 
+@pytest.mark.long
 def test_it_swings_and_decays_as_stokes_found() -> None:
     expected = stokes_frequency()
     period = 2.0 * np.pi / expected.real

@@ -33,6 +33,7 @@ def chain(dimension, **keys):
     return linked_scene(bars, hinges, **keys)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("dimension", "steps"), [(2, 1000), (3, 200)])
 def test_a_free_chain_keeps_its_momenta_and_its_joints_together(dimension, steps):
     it, gaps = Simulation(chain(dimension, end=0.002 * steps, step=0.002)), []
@@ -199,6 +200,7 @@ def test_a_bar_hinged_to_a_mechanism_that_changes_its_shape(install):
     assert errors[1] < 0.3 * errors[0]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("stepping", "error"), [("substeps", 5e-4), ("implicit", 1e-3)])
 @DIMENSIONS
 def test_a_hinged_pair_that_hits_a_wall_keeps_its_energy(stepping, error, dimension):

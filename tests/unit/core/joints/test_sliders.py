@@ -118,6 +118,7 @@ def test_a_bead_on_a_driven_arm_flies_outwards_to_second_order(dimension):
     assert falls(balance, 0.3)
 
 
+@pytest.mark.long
 @DIMENSIONS
 def test_bodies_that_slide_on_each_other_keep_momenta_and_energy(dimension):
     """Their axis turns with both: forces on them have one line, however far they have slid."""

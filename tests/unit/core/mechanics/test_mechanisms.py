@@ -239,6 +239,7 @@ def test_buoyancy_turns_what_is_heavy_at_one_end():
     assert abs(it.state.ledger.relative_residual) < 1e-4
 
 
+@pytest.mark.long
 def test_relative_motion_keeps_the_angular_momentum_and_the_ledger_has_its_work():
     errors, ends = [], []
     for steps in (50, 100, 200):
@@ -367,6 +368,7 @@ def test_a_reciprocal_stroke_without_inertia_leads_nowhere():
     assert np.abs(it.bodies["it"].position - [1.0, 0.7]).max() < 2e-3
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("stepping", ["substeps", "implicit"])
 def test_a_contact_in_the_fluid_turns_the_whole(stepping):
     table = pair(radius=0.1, length=0.8, density=3.0, position=[1.0, 0.5], angle=0.4)

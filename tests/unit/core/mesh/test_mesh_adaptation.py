@@ -56,6 +56,7 @@ def test_a_rejected_attempt_changes_nothing(monkeypatch):
     assert all(getattr(state, key) is value for key, value in before.items())
 
 
+@pytest.mark.long
 def test_steps_whose_turns_did_not_settle_are_counted(monkeypatch):
     wall = {"law": "centre", "range": 0.1, "epsilon": 1e-4, "epsilon_wall": 1e-4}
     scene = falling_disk(**SHORT, body={"position": [1.0, 0.2], "velocity": [0.0, -1.0]}, contact=wall)

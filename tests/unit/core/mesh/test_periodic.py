@@ -108,6 +108,7 @@ def test_a_pressure_drop_takes_a_ball_along_and_the_energy_balance_closes() -> N
     assert fine.bodies["x"][-1] == pytest.approx(coarse.bodies["x"][-1], abs=1e-3)
 
 
+@pytest.mark.long
 def test_in_a_box_that_is_periodic_all_around_a_drop_accelerates_all_alike() -> None:
     """dU/dt = G/ρ of fluid and ball, in 3D: nothing holds them. The mesh misses .1 % of the ball's volume."""
     around = [{"on": "all", "type": "periodic"}, {"on": "left", "type": "periodic", "pressure_drop": 2.0}]

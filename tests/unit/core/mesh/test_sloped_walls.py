@@ -81,6 +81,7 @@ def off_its_planes(mesh: Mesh, domain: Domain) -> float:
 CASES = [(name, kind) for name in SHAPES for kind in ("cad", "mesh") if (name, kind) != ("pyramid", "cad")]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("name", "kind"), CASES)
 def test_sloped_walls_stay_through_ten_meshes(name: str, kind: str, tmp_path: Path) -> None:
     make, centre = SHAPES[name]
@@ -103,6 +104,7 @@ def test_sloped_walls_stay_through_ten_meshes(name: str, kind: str, tmp_path: Pa
     assert float(cell_volumes(mesh.points, mesh.cells).sum()) == pytest.approx(before, rel=1e-14 * max(1.0, 1.0 / size))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("way", ["cad", "fill"])
 def test_rims_of_curved_walls_in_sloped_planes_are_on_both(way: Way, tmp_path: Path) -> None:
     """Edges there are halved as the body is near: the new vertices are on the round wall, and in the plane."""

@@ -174,6 +174,7 @@ def test_a_body_that_stops_stops_its_window() -> None:
     assert np.ptp(residual[1:]) < 0.02 * run.history.energy["kinetic"][0]
 
 
+@pytest.mark.long
 def test_the_floor_of_the_channel_stops_the_window_and_the_body() -> None:
     law = {"law": "spring-dashpot", "range": 0.05, "stiffness": 1e5}
     run = Simulation(scene(WINDOW, {"position": [1.0, 1.3]}, contact=law, time={"end": 0.5, "step": 0.005}))

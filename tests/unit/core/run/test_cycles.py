@@ -50,6 +50,7 @@ def test_cycles_that_end_between_two_steps_or_by_rounding_are_counted_and_others
     np.testing.assert_allclose(cycles(coarse, {"it": 0.1})["it"]["rotation"], [[0.0, 0.0, 1.0]] * 2)
 
 
+@pytest.mark.long
 def test_summary_and_report_have_the_cycles_of_a_run(tmp_path):
     head = OUT | {"period": 0.1}
     run = rigidfluid.run(scene(WAG | {"period": 0.4}, head, end=0.5, velocity=[0.5, 0.0]), tmp_path)
@@ -93,6 +94,7 @@ def test_a_lone_cycle_is_remarked_where_the_fluid_has_inertia():
     assert told([[1.0, 0.0]], [0.0], inertia=False) == []
 
 
+@pytest.mark.long
 def test_a_swimmer_from_rest_says_so_in_its_summary():
     """In a fluid with inertia its first cycle is not its second."""
     settings = ["fluid.model=navier-stokes", "fluid.density=3.0", "mesh.size=12", "mesh.size_body=1.0", "time.end=8.0"]

@@ -43,6 +43,7 @@ def refuse_to_resume(folder: Path, name: str, found: str) -> None:
     }
 
 
+@pytest.mark.long
 def test_any_bit_of_a_checkpoint_that_has_changed_is_seen(folder: Path) -> None:
     path, random = folder / "state.h5", np.random.default_rng(SEED)
     whole = path.read_bytes()

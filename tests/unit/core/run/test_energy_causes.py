@@ -137,6 +137,7 @@ def gust(step: float) -> Scene:
     )
 
 
+@pytest.mark.long
 def test_a_vortex_leaves_through_coarse_cells_with_all_its_energy() -> None:
     """Carried energy is a cubic of the velocity: counted by the facets' own rule it was .7 % off, whatever the step.
 

@@ -102,6 +102,7 @@ def account(scene: Scene) -> tuple[float, list[str]]:
     return worst, [warning["text"] for warning in energy["warnings"]]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", PAIRS)
 def test_a_wrong_scene_is_told_and_its_right_twin_is_not(case: str) -> None:
     pair = PAIRS[case]

@@ -157,12 +157,14 @@ def test_other_programs_find_the_pieces(tmp_path):
     assert {"velocity", "pressure"} <= set(read.point_data.keys())
 
 
+@pytest.mark.long
 def test_a_report_is_made_of_a_shared_run(tmp_path, monkeypatch):
     shared(2, tmp_path)
     monkeypatch.setattr(gathered_backend.CURRENT, "ranks", ALONE, raising=False)
     assert all(path.exists() for path in report(tmp_path))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("before", "after"), [(1, 2), (2, 1), (2, 3), (3, 2)])
 def test_another_number_of_ranks_goes_on_as_those_before(tmp_path, before, after):
     """A new mesh is made before the checkpoint, and after it."""

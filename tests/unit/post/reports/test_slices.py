@@ -249,6 +249,7 @@ def wet(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.long
 def test_a_report_of_a_3d_flow(wet: Path) -> None:
     names = {path.name for path in report(wet, plane="xz", follow="ball")}
     flow = {"speed_field", "streamlines", "vorticity", "pressure", "whole_mesh", "mesh", "space"}

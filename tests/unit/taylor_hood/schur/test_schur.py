@@ -90,6 +90,7 @@ def test_factors_without_fill_are_the_matrix_on_its_pattern():
     assert abs(product[~there]).max() > 0.1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("model", ["stokes", "navier-stokes"])
 @pytest.mark.parametrize("boundary", [(), MIXED, PERIODIC], ids=["walls", "open and slip", "periodic"])
 def test_blocks_give_what_factors_give(model, boundary):
@@ -134,6 +135,7 @@ def test_light_bodies_and_viscous_fluids_take_few_more(iterations):
     assert max(iterations) <= 35, iterations
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("solver", "most", "taken"), [("auto", 10**9, 0), ("auto", 0, 1), ("lu", 0, 0), ("schur", 10**9, 1)]
 )
