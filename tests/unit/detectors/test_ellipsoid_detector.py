@@ -18,9 +18,11 @@ from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.mechanics.rigid import moment, rotate, rotation_matrices
 from rigidfluid.core.model.interfaces import Body, PartOptions
 from rigidfluid.core.model.types import Contacts, Pose
+from rigidfluid.core.setup.geometry_checks import surfaces_of
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
 from rigidfluid.detectors.ellipsoid_separation import touching_normal
+from rigidfluid.domains.stenosis import Stenosis, StenosisOptions
 from rigidfluid.errors import SceneError, StepError
 
 SHAPES = {
@@ -289,6 +291,15 @@ def test_the_gap_grows_as_its_normal_and_arm_say(dimension: int, apart: tuple[fl
         arm = contacts.point_a - pose.position[:1]
         np.testing.assert_allclose(slope, contacts.normal[0], rtol=0, atol=1e-5)
         np.testing.assert_allclose(twist, moment(arm, contacts.normal)[0], rtol=0, atol=1e-5)
+
+
+def test_an_ellipse_over_the_crest_of_a_bump_points_at_it() -> None:
+    domain = Stenosis(StenosisOptions(length=12.0, width=5.0, radius=2.0, throat=2.0), 2)
+    bump = next(wall for wall in surfaces_of(domain, 1) if wall.name == "bottom_bump")
+    contacts = detect([ellipsoid(0.3, 0.2)], Pose(np.array([[0.0, -0.7]]), np.zeros((1, 1))), (bump,))
+    np.testing.assert_allclose(contacts.gap, [0.1], rtol=1e-12)
+    np.testing.assert_allclose(contacts.point_a, [[0.0, -0.9]], atol=1e-12)
+    np.testing.assert_allclose(contacts.point_b, [[0.0, -1.0]], atol=1e-12)
 
 
 @DIMENSIONS

@@ -12,7 +12,7 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.fluid_step import StepEnd, step_to
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.model.reduced_model import Coupling, Evaluation, ReducedModel
-from rigidfluid.core.model.state import MotionState, unloaded
+from rigidfluid.core.model.state import MotionState, Past, unloaded
 from rigidfluid.core.model.types import Pose, Twist
 from rigidfluid.core.run.simulation import Simulation
 
@@ -30,12 +30,14 @@ def path_to(simulation: Simulation, moved: float) -> BodyStep:
     return BodyStep(pose, state.twist, moved_state, nothing(pose), 0.0, 0.0, 1, unloaded(pose), coupling=coupling)
 
 
-def turned(moved: float, coupled: bool = True, scene=scenes.dropped) -> FloatArray:
-    """For a disk that falls at first."""
+def turned(moved: float, coupled: bool = True, scene=scenes.dropped, fallen: bool = False) -> FloatArray:
+    """For a disk that falls at first, or has ``fallen`` evenly for as long a step."""
     simulation = Simulation(scene(STEP), None, False)
     falls = Twist(np.array([[0.0, -SPEED]]), np.zeros((1, 1)))
     motions = replace(simulation.state.motions, twist=falls)
-    simulation.state = state = replace(simulation.state, twist=falls, motions=motions)
+    start = Pose(motions.pose.position + [[0.0, SPEED * STEP]], motions.pose.orientation)
+    past = Past(start, falls, STEP) if fallen else None
+    simulation.state = state = replace(simulation.state, twist=falls, motions=motions, past=past)
     path = path_to(simulation, moved)
     path = path if coupled else replace(path, coupling=None)
     step = step_to(simulation.system, state, StepEnd(STEP, STEP, path.pose, path.impulse))
@@ -45,6 +47,12 @@ def turned(moved: float, coupled: bool = True, scene=scenes.dropped) -> FloatArr
 def test_impulses_make_up_for_what_was_extrapolated():
     """From -7 to what the mesh does, +5, by the mass that the model knows."""
     np.testing.assert_allclose(turned(5.0 * STEP), [[0.0, MASS * (SPEED + 5.0), 0.0]], rtol=1e-12)
+
+
+def test_a_second_step_differences_the_poses_as_it_does_those_of_the_mesh():
+    """BDF2 of the places 7, 0 and 5, in units of the step: 1.5 * 5 + 0.5 * 7."""
+    np.testing.assert_allclose(turned(5.0 * STEP, fallen=True), [[0.0, MASS * (SPEED + 11.0), 0.0]], rtol=1e-12)
+    assert not turned(-SPEED * STEP, fallen=True).any()
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,11 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+import pytest
 from linked_bodies import masses, placed, split
 
 from rigidfluid.core.contact.body_step import undisturbed
+from rigidfluid.core.coupling import fluid_scheme
 from rigidfluid.core.coupling.fluid_scheme import _velocities, expected_load_of, load_before
 from rigidfluid.core.coupling.navier_stokes_scheme import NavierStokesScheme
 from rigidfluid.core.coupling.stokes_scheme import StokesScheme
@@ -67,6 +69,34 @@ def test_the_load_that_is_expected_has_moved_the_bodies_in_the_step_before() -> 
     given = state(change, contact, link, (random(5), random(6)))
     found = expected_load_of(system(), given, known)
     np.testing.assert_allclose(found, load + (random(6) - random(5)).ravel()[VELOCITIES])
+
+
+def test_the_load_that_a_solution_shows_has_moved_the_bodies_in_its_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    """M ΔU = (Φ + contacts + joints) Δt, in a first step."""
+    known, load, contact, link = model(), np.array([1.0, -2.0, 3.0]), random(1), random(2)
+    monkeypatch.setattr(fluid_scheme, "updated_model", lambda *_: known)
+    change, pushed = np.zeros((2, 3)), (contact + link).ravel()[VELOCITIES]
+    change.flat[VELOCITIES] = STEP * known.inverse_mass @ (load + pushed)
+    before: Any = SimpleNamespace(
+        past=None, past_step=None, past_twist=None, motions=undisturbed_motions(np.zeros((2, 3)))
+    )
+    after: Any = SimpleNamespace(
+        past=SimpleNamespace(applied=None),
+        past_step=STEP,
+        contacts=None,
+        motions=undisturbed_motions(change),
+        link=SimpleNamespace(wrench=link),
+    )
+    step: Any = SimpleNamespace(derivative=np.array([1.0, -1.0, 0.0]) / STEP, impulse=STEP * contact)
+    used = Coupling(known, np.zeros(3), np.full(3, np.nan), np.zeros(3))
+    path: Any = SimpleNamespace(motions=after.motions)
+    found = NavierStokesScheme(system())._shown(before, after, path, used, step)
+    np.testing.assert_allclose(found.load, load)
+
+
+def undisturbed_motions(twist: FloatArray) -> Any:
+    """Motions without contacts."""
+    return SimpleNamespace(twist=split(twist, 2), contact=wrench(np.zeros((2, 3))))
 
 
 def test_drag_that_has_slowed_a_body_is_no_load_of_the_next_step() -> None:

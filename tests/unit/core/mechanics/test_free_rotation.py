@@ -8,7 +8,7 @@ from scenes import dry_tables
 from scipy.special import ellipj, ellipkinc
 
 from rigidfluid.core.case.load import scene_from_dict
-from rigidfluid.core.mechanics.free_rotation import rotate_freely
+from rigidfluid.core.mechanics.free_rotation import _midpoint, rotate_freely
 from rigidfluid.core.mechanics.rigid import rotate, rotation_matrices
 from rigidfluid.core.mechanics.single_bodies import SingleBodies
 from rigidfluid.core.run.simulation import Simulation
@@ -48,6 +48,14 @@ def test_it_follows_jacobi(time):
 def test_the_period_is_the_known_one():
     turned = rotate_freely(UPRIGHT, (INERTIA * START)[None], np.diag(INERTIA)[None], PERIOD)
     np.testing.assert_allclose(spin(turned), START, atol=1e-6)
+
+
+def test_the_midpoint_rule_keeps_the_energy_over_a_large_turn():
+    """Only where its equation is solved, which Newton's method does for turns that are no small change."""
+    turned = UPRIGHT.copy()
+    _midpoint(turned[0], INERTIA * START, np.diag(1.0 / INERTIA), 1.5)
+    assert np.linalg.norm(spin(turned) - START) > 0.5
+    assert INERTIA @ spin(turned) ** 2 == pytest.approx(INERTIA @ START**2, rel=1e-12)
 
 
 def test_one_long_turn_is_as_good_as_many_short_ones():

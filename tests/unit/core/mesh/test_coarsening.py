@@ -82,6 +82,12 @@ def test_cells_finer_than_wanted_may_grow_up_to_that():
     assert not asks(points, pose, sizes=replace(SIZES, size=0.6, size_body=0.075))
 
 
+def test_a_cell_counts_by_its_growth_over_what_it_was_or_over_what_is_wanted():
+    """Whichever of both is longer; one cell alone in each mesh."""
+    for made, now, asked in ((0.5, 1.3, False), (0.5, 1.5, True), (2.0, 2.7, False), (2.0, 2.9, True)):
+        assert has_coarsened(np.array([made]), np.array([now]), MESH.ranks) is asked
+
+
 def test_a_gap_asks_by_its_own_rule_alone():
     near = upright([1.0, RADIUS + 0.02])
     mesh = initial_mesh(FluidDomain(DISK, near, BOX, WALLS), SIZES)

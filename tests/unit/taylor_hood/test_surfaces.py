@@ -1,0 +1,28 @@
+"""Velocities prescribed on the faces of one mesh."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from rigidfluid.core.case.expressions import VectorExpression
+from rigidfluid.core.fluid.conditions import PrescribedVelocity
+from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.surfaces import Surfaces
+from rigidfluid.testing.fluid.boxes import box
+from rigidfluid.testing.fluid.exact import problem
+
+
+def test_inflow_and_outflow_of_an_enclosed_flow_are_made_equal_on_the_mesh() -> None:
+    """A hundredth more comes in than goes out, and both become their mean."""
+    given = [VectorExpression.parse([source, 0.0], "u") for source in ("1.01*y*(1 - y)", "0.99*y*(1 - y)")]
+    left, right = (partial(PrescribedVelocity, value=value) for value in given)
+    mesh = box(2, 2)
+    numbering = Numbering(mesh.cells, len(mesh.points))
+    surfaces = Surfaces(numbering, mesh, problem(2, {"x0": left, "x1": right}).conditions, ())
+    points, nobody = numbering.node_points(mesh.points), np.zeros((0, 3))
+    found = surfaces.prescribed_velocity(0.0, points, nobody[:, :2], nobody, np.zeros(0, dtype=bool))
+    ends = np.isin(points[:, 0], (0.0, 1.0))
+    profile = np.column_stack([points[:, 1] * (1.0 - points[:, 1]), np.zeros(len(points))])
+    np.testing.assert_allclose(found[ends], profile[ends], rtol=2e-4)
