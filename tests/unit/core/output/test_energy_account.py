@@ -146,9 +146,7 @@ def test_what_re_meshing_made_came_from_nowhere():
 
 def test_friction_of_impacts_excuses_what_impacts_lost():
     energy = blow(-1.0, contacts=0.8) | {"path_friction": np.array(after_blow(0.7, 0))}
-    assert (
-        "3 % of the energy at hand vanished between 0.2 and 0.3: 2 % by a time.step" in warned(energy)[0].text
-    )
+    assert "3 % of the energy at hand vanished between 0.2 and 0.3: 2 % by a time.step" in warned(energy)[0].text
 
 
 def test_energy_may_come_and_vanish():
