@@ -97,7 +97,7 @@ def test_coefficients_of_a_fall_go_by_its_greatest_speed(tmp_path: Path) -> None
 
 
 def tumbling(dimension: int) -> dict[str, Any]:
-    """An ellipsoid that spins about one axis of space beside a ball that does not; no fluid."""
+    """An ellipsoid that spins about one axis of space, and a ball that does not; no fluid."""
     still = [0.0] * dimension
     spin = [2.0] if dimension == 2 else [0.0, 0.0, 2.0]
     ellipsoid = {"type": "ellipsoid", "semi_axes": [0.3, *[0.1] * (dimension - 1)], "angular_velocity": spin}
