@@ -37,9 +37,7 @@ def parallel_envs(task: Task, count: int) -> AsyncVectorEnv:
 
 def _use_one_thread() -> None:
     """Limit libraries that are loaded, and, by the environment, those that are loaded later."""
-    import numba
     from threadpoolctl import threadpool_limits
 
     os.environ |= dict.fromkeys(_VARIABLES, "1")
     threadpool_limits(1)
-    numba.set_num_threads(1)
