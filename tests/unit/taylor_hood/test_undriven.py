@@ -10,6 +10,7 @@ from rigidfluid.api import Simulation, scene_from_dict
 def test_a_creeping_flow_whose_inflow_ends_is_at_rest() -> None:
     """Then the right side of its system is zero, and no residual is small beside it."""
     inflow = {"on": "left", "type": "velocity", "velocity": [1.0, 0.0], "profile": "parabolic"}
+    disk = {"name": "disk", "type": "sphere", "radius": 0.2, "density": 1.0, "position": [1.0, 0.5], "fixed": True}
     run = Simulation(
         scene_from_dict(
             {
@@ -20,7 +21,8 @@ def test_a_creeping_flow_whose_inflow_ends_is_at_rest() -> None:
                     inflow | {"over_time": [[0.0, 1.0], [0.25, 1.0], [0.5, 0.0], [1.0, 0.0]]},
                     {"on": "right", "type": "pressure", "pressure": 0.0},
                 ],
-                "mesh": {"size": 0.5, "size_body": 0.5},
+                "body": [disk],
+                "mesh": {"size": 0.5, "size_body": 0.2},
                 "time": {"end": 1.0, "step": 0.25},
                 "output": {"every": 1.0},
             }
