@@ -140,7 +140,10 @@ def test_a_factor_that_lets_more_in_than_out_is_refused_before_the_episode() -> 
         ({"actions": [AppliedWrench("disk", low=1.0, high=0.0)]}, r"AppliedWrench\(disk\).high: found .* below 'low'"),
         ({"actions": [AppliedWrench("disk", low=(0.0, 0.0), high=1.0)]}, r"\(disk\).low: .* a finite number, or 3 of"),
         ({"actions": [AppliedWrench("disk", low=-np.inf, high=1.0)]}, r"\(disk\).low: found -inf"),
-        ({"observations": [BodyValue("disk", "gap", low=1.0, high=1.0)]}, r"\(disk, gap\): found 'low' and 'high' at 1"),
+        (
+            {"observations": [BodyValue("disk", "gap", low=1.0, high=1.0)]},
+            r"\(disk, gap\): found 'low' and 'high' at 1",
+        ),
     ],
     ids=lambda value: None if isinstance(value, dict) else value[:24],
 )

@@ -23,7 +23,7 @@ class Course:
         self.rows: tuple[Row, ...] = ((0.0, start),)
 
     def turn(self, now: float, target: FloatArray, over: float) -> None:
-        """Go from the values ``now`` to a ``target`` (m,) ``over`` a time [time]."""
+        """Go from the values ``now``, not before the last row, to a ``target`` (m,) ``over`` a time [time]."""
         self.rows = (*self.rows, (now, self.value(now)), (now + over, target))
 
     def value(self, time: float) -> FloatArray:
