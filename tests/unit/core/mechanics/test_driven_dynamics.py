@@ -116,8 +116,10 @@ def test_impulses_of_contacts_change_momenta_at_once_and_applied_wrenches_steadi
     motions.driven = False
     rows = split(np.random.default_rng(8).normal(size=flat(motions.twist).shape), dimension)
     impulse, still = Wrench(rows.velocity, rows.angular_velocity), motions.pose
-    mass = np.linalg.inv(motions.inertia(0.0)) if dimension == 2 else inverse_lab_inertia(
-        motions.inertia(0.0), still.orientation
+    mass = (
+        np.linalg.inv(motions.inertia(0.0))
+        if dimension == 2
+        else inverse_lab_inertia(motions.inertia(0.0), still.orientation)
     )
 
     def pushed(twist: Twist, wrench: Wrench, time: float) -> Twist:
