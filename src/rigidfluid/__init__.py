@@ -9,13 +9,15 @@ if TYPE_CHECKING:
     from rigidfluid.core.case.load import load_scene, scene_from_dict
     from rigidfluid.core.run.run import run
     from rigidfluid.core.scene.scene import Scene
+    from rigidfluid.post.run_results import load_results
 
 __version__ = "0.1.0"
-__all__ = ["Scene", "__version__", "load_scene", "run", "scene_from_dict"]
+__all__ = ["Scene", "__version__", "load_results", "load_scene", "run", "scene_from_dict"]
 
 _HOMES = {
     "run": "rigidfluid.core.run.run",
     "Scene": "rigidfluid.core.scene.scene",
+    "load_results": "rigidfluid.post.run_results",
     "load_scene": "rigidfluid.core.case.load",
     "scene_from_dict": "rigidfluid.core.case.load",
 }

@@ -170,8 +170,12 @@ from rigidfluid.size_fields.vorticity import Vorticity, VorticityOptions
 from rigidfluid.taylor_hood.sparse_backend import SparseOptions
 
 if TYPE_CHECKING:
-    from rigidfluid.core.run.run import run
+    from rigidfluid.core.output.fluid_fields import FluidFields
+    from rigidfluid.core.output.history import History
+    from rigidfluid.core.run.run import Progress, run
     from rigidfluid.core.run.simulation import BodyNow, SavedRun, Simulation
+    from rigidfluid.post.notebook import NotebookProgress
+    from rigidfluid.post.run_results import RunResults, load_results
 
 __all__ = [
     "BODY",
@@ -239,11 +243,13 @@ __all__ = [
     "Fluid",
     "FluidBackend",
     "FluidDomain",
+    "FluidFields",
     "FluidProblem",
     "FluidState",
     "ForceLaw",
     "Hinge",
     "HingeOptions",
+    "History",
     "IntArray",
     "JoinedBodies",
     "Joint",
@@ -271,6 +277,7 @@ __all__ = [
     "NoSlip",
     "NormalLaw",
     "NormalOptions",
+    "NotebookProgress",
     "Obstacles",
     "OnAxis",
     "OutputError",
@@ -292,6 +299,7 @@ __all__ = [
     "PrescribedPressure",
     "PrescribedTable",
     "PrescribedVelocity",
+    "Progress",
     "RefineTable",
     "Registry",
     "RelativeStrokeTable",
@@ -302,6 +310,7 @@ __all__ = [
     "Rod",
     "Rotation",
     "RotationDamper",
+    "RunResults",
     "RunWarning",
     "SameAxis",
     "SameOrientation",
@@ -358,6 +367,7 @@ __all__ = [
     "hookimpl",
     "in_unit",
     "initial_pose",
+    "load_results",
     "load_scene",
     "missing_packages",
     "model_of",
@@ -371,12 +381,21 @@ __all__ = [
 
 
 def __getattr__(name: str) -> object:
-    """Import the loop's names on first use: plug-ins are imported at every start and need no loop."""
+    """Import runs and their results on first use: plug-ins are imported at every start and need no loop."""
     if name not in _LOOP:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(_LOOP[name]), name)
 
 
-_LOOP = {"run": "rigidfluid.core.run.run"} | dict.fromkeys(
-    ("BodyNow", "SavedRun", "Simulation"), "rigidfluid.core.run.simulation"
-)
+_LOOP = {
+    "BodyNow": "rigidfluid.core.run.simulation",
+    "FluidFields": "rigidfluid.core.output.fluid_fields",
+    "History": "rigidfluid.core.output.history",
+    "NotebookProgress": "rigidfluid.post.notebook",
+    "Progress": "rigidfluid.core.run.run",
+    "RunResults": "rigidfluid.post.run_results",
+    "SavedRun": "rigidfluid.core.run.simulation",
+    "Simulation": "rigidfluid.core.run.simulation",
+    "load_results": "rigidfluid.post.run_results",
+    "run": "rigidfluid.core.run.run",
+}

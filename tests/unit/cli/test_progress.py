@@ -6,6 +6,7 @@ import pytest
 
 from rigidfluid.cli import console
 from rigidfluid.cli.progress import progress_bar, progress_lines
+from rigidfluid.core.output.history import History
 from rigidfluid.core.run.process import Launch
 from rigidfluid.core.run.run import Progress
 from rigidfluid.core.scene.scene import TimeTable
@@ -20,7 +21,7 @@ def told(seconds_of_a_step: float, first: int, last: int, capsys: pytest.Capture
 
 
 def progress(time: float, elapsed: float) -> Progress:
-    return Progress(time=time, end=1.0, step=0.01, gap=1.0, elapsed=elapsed, failed_remeshes=0)
+    return Progress(time=time, end=1.0, step=0.01, gap=1.0, elapsed=elapsed, failed_remeshes=0, history=History(2))
 
 
 def test_a_line_every_ten_seconds_says_how_far_and_how_long(capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -11,17 +11,34 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidfluid.core.model.joints import COORDINATES
+from rigidfluid.core.output.optional_package import optional_package
 from rigidfluid.core.output.records import Records, Row, columns
 from rigidfluid.core.output.tables import read_columns, read_header, read_rows, table_path
+from rigidfluid.described import Described
 from rigidfluid.errors import OutputError
 
 
-class History:
-    """Tables of a run, as ``bodies`` and ``energy``, and the ``summary`` of summary.json.
+class History(Described):
+    """Tables of a run by column, and its summary.
 
-    The ``dimension`` and the ``coordinates`` of joints decide the columns. Rows are kept in memory, ``records``
-    from the start; but with the ``folder`` in which a run writes its tables none is: each table is read when it is
-    asked for, and a later run in the same folder replaces it.
+    Rows are kept in memory, ``records`` from the start; but with the ``folder`` in which a run writes its tables none
+    is: each table is read when it is asked for, and a later run in the same folder replaces it.
+
+    Parameters
+    ----------
+    dimension : int
+        Number of space dimensions d.
+    records : dict, optional
+        Rows to begin with, by table.
+    folder : Path, optional
+        Folder of the tables on disk.
+    coordinates : iterable of str
+        Coordinates of joints, which have columns of their own.
+
+    Attributes
+    ----------
+    summary : dict
+        The content of summary.json; empty before the run has ended.
     """
 
     def __init__(
@@ -37,11 +54,16 @@ class History:
         self._folder = folder
 
     @property
+    def columns(self) -> dict[str, tuple[str, ...]]:
+        """Names of the columns of each table."""
+        return columns(self.dimension, self._coordinates)
+
+    @property
     def records(self) -> Records:
         """All rows by table name; raises OutputError as `table` does."""
         if self._folder is None:
             return self._rows
-        return {name: _rows(table_path(self._folder, name)) for name in columns(self.dimension, self._coordinates)}
+        return {name: _rows(table_path(self._folder, name)) for name in self.columns}
 
     @property
     def lengths(self) -> dict[str, int]:
@@ -59,20 +81,71 @@ class History:
                 self._rows.setdefault(name, []).extend(rows)
 
     def table(self, name: str, only: Iterable[str] | None = None) -> dict[str, NDArray[Any]]:
-        """Read one table as arrays by column name, a row per entry; all columns, or the ``only`` ones that are wanted.
+        """Read one table as arrays by column.
 
-        A folder that an earlier version has written has all columns that it knew. Raises OutputError if the table is on
-        disk and cannot be read.
+        Parameters
+        ----------
+        name : str
+            ``bodies``, ``contacts``, ``joints``, ``energy``, ``steps`` or ``probes``.
+        only : iterable of str, optional
+            The columns that are wanted; all if not given. A folder that an earlier version has written has all that it
+            knew.
+
+        Returns
+        -------
+        dict of str to array
+            A column (r,) by its name, r rows.
+
+        Raises
+        ------
+        OutputError
+            If the table is on disk and cannot be read.
         """
-        names = columns(self.dimension, self._coordinates)[name]
+        names = self.columns[name]
         wanted = tuple(names if only is None else only)
         if self._folder is not None:
             path = table_path(self._folder, name)
             with _reading(path):
                 known = wanted if only is not None else [name for name in read_header(path) if name in wanted]
-                return read_columns(path, known or wanted)
+                return self._read(path, known or wanted)
         rows = self._rows.get(name, [])
         return {column: np.array([row[i] for row in rows]) for i, column in enumerate(names) if column in wanted}
+
+    def frame(self, name: str) -> Any:
+        """Table as a data frame of pandas.
+
+        Parameters
+        ----------
+        name : str
+            As `table` takes it.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A row for each of the table's, a column for each of its.
+
+        Raises
+        ------
+        OutputError
+            If pandas is not installed, or the table cannot be read.
+        """
+        pandas = optional_package("pandas", "notebooks")
+        return pandas.DataFrame(self.table(name))
+
+    def _read(self, path: Path, wanted: Sequence[str]) -> dict[str, NDArray[Any]]:
+        """Columns of a table on disk."""
+        return read_columns(path, wanted)
+
+    def _facts(self) -> Mapping[str, object]:
+        found = self.summary
+        energy = found.get("energy", {})
+        return {
+            "scene": found["scene"]["scene"]["name"] if "scene" in found else None,
+            "status": found.get("status", "no summary yet"),
+            "folder": self._folder,
+            **{key.replace("_", " "): found.get(key) for key in ("time", "steps", "remeshes", "cells", "smallest_gap")},
+            "energy not accounted for": energy.get("relative_residual"),
+        }
 
     @property
     def bodies(self) -> dict[str, NDArray[Any]]:

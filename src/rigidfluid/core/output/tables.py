@@ -119,10 +119,11 @@ def read_header(path: Path) -> list[str]:
         return next(csv.reader(file), [])
 
 
-def read_columns(path: Path, wanted: Sequence[str]) -> dict[str, NDArray[Any]]:
-    """Columns of a table on disk as arrays, with no more of it held meanwhile; raises ValueError as read_rows does."""
+def read_columns(path: Path, wanted: Sequence[str], *, complete: bool = True) -> dict[str, NDArray[Any]]:
+    """Columns of a table on disk as arrays, with no more of it held meanwhile; raises ValueError as read_rows does, and
+    drops a last line as it does."""
     with path.open(newline="", encoding="utf-8") as file:
-        reader = csv.reader(file)
+        reader = csv.reader(line for line in file if complete or line.endswith("\n"))
         names = next(reader, [])
         columns = [(name, names.index(name), _empty(name)) for name in wanted]
         for row in reader:

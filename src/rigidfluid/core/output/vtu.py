@@ -19,7 +19,7 @@ from rigidfluid.core.model.types import Fields
 from rigidfluid.core.output.disk import replace_text
 from rigidfluid.errors import OutputError
 
-_QUADRATIC = {6: 22, 10: 24}  # VTK's numbers for the quadratic triangle and tetrahedron
+QUADRATIC = {6: 22, 10: 24}  # VTK's numbers for the quadratic triangle and tetrahedron
 _DIMENSIONS = {6: 2, 10: 3}
 _TYPES = {"f4": "Float32", "f8": "Float64", "i8": "Int64", "u1": "UInt8"}
 _HEADER = 8  # bytes that say how long an array is
@@ -39,7 +39,7 @@ def write_vtu(path: Path, fields: Fields) -> None:
     width = fields.cells.shape[1]
     data_array(topology, "connectivity", fields.cells.astype("<i8").ravel())
     data_array(topology, "offsets", np.arange(width, width * cells + 1, width, dtype="<i8"))
-    data_array(topology, "types", np.full(cells, _QUADRATIC[width], dtype="u1"))
+    data_array(topology, "types", np.full(cells, QUADRATIC[width], dtype="u1"))
     data = ET.SubElement(piece, "PointData", Vectors="velocity", Scalars="pressure")
     data_array(data, "velocity", in_space(fields.velocity).astype("<f4"))
     data_array(data, "pressure", fields.pressure.astype("<f4"))

@@ -39,7 +39,7 @@ def run(
         Go on from the checkpoint in ``out``; the result equals that of an uninterrupted run to the last bit, unless
         several processes share the run and its backend's factors depend on the order of their messages.
     progress : callable or None
-        Called after each accepted step.
+        Called after each accepted step with a `Progress`; `NotebookProgress` shows it in a notebook.
     processes : int or None
         How many processes were started to share the run, each calling this; a backend that cannot share it among so
         many is refused. None takes the backend's word.
@@ -103,7 +103,7 @@ def simulate(
 @dataclass(frozen=True, slots=True)
 class Progress:
     """Progress of a run: ``time`` of ``end`` [time], latest ``step`` [time], smallest ``gap`` [length], wall seconds,
-    and how many new meshes could not be made."""
+    how many new meshes could not be made, and the tables so far."""
 
     time: float
     end: float
@@ -111,11 +111,12 @@ class Progress:
     gap: float
     elapsed: float
     failed_remeshes: int
+    history: History
 
 
 def _progress(now: Simulation) -> Progress:
     step, gap = now.clock.size(now.state.level or 0), float(now.state.gaps.min())
-    return Progress(now.time, now.clock.end, step, gap, now.elapsed, now.counts.failed_remeshes)
+    return Progress(now.time, now.clock.end, step, gap, now.elapsed, now.counts.failed_remeshes, now.history)
 
 
 def _status(error: BaseException) -> str:

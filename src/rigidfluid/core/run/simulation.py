@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 
@@ -21,6 +21,7 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FluidState, Pose, Twist, Wrench
 from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
+from rigidfluid.core.output.fluid_fields import FluidFields
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import StepCost, count_cells, joint_coordinates, records
 from rigidfluid.core.output.writer import Writer, has_checkpoint
@@ -38,6 +39,7 @@ from rigidfluid.core.setup.assemble import assemble
 from rigidfluid.core.setup.model import Model
 from rigidfluid.core.setup.named_files import file_digests
 from rigidfluid.core.setup.prescribed import PrescribedMotion, prescribed_motion
+from rigidfluid.described import Described, first_names
 from rigidfluid.errors import OutputError, SceneError, StepError
 
 Observer = Callable[["Simulation"], None]
@@ -76,7 +78,7 @@ class SavedRun:
     reached: tuple[float, ...]
 
 
-class Simulation:
+class Simulation(Described):
     """A run in progress: the latest accepted state, and all that it takes to reach the next one.
 
     Parameters
@@ -175,6 +177,24 @@ class Simulation:
         motions, known = s.motions, self.system.motions
         whole = (motions.pose, motions.twist, motions.hydrodynamic, motions.contact, known.least(s.gaps))
         return now | _bodies_now(known.names, *whole, first=len(known.mass) - len(known.names))
+
+    def fields(self) -> FluidFields:
+        """Fields of the fluid at present, as `RunResults.fields` reads those of an output.
+
+        Returns
+        -------
+        FluidFields
+            Arrays and the time; where several processes share the run, those of this one's cells.
+
+        Raises
+        ------
+        OutputError
+            If the bodies move without a fluid.
+        """
+        if not count_cells(self.state.mesh):
+            found, allowed = f"none, as {self.model.name!r} has no fluid", "those of a scene with a fluid"
+            raise OutputError("fields", found, allowed, "Give [fluid] a backend with a mesh, as scikit-fem.")
+        return FluidFields.from_fields(self.system.backend.fields(self.state.fluid, self.state.mesh), self.time)
 
     def step(self) -> State:
         """Take one accepted step, record it, call who is due, and return the new state.
@@ -320,6 +340,18 @@ class Simulation:
         if self._writer is not None:
             self._writer.close()
 
+    def _facts(self) -> Mapping[str, object]:
+        gap = float(self.state.gaps.min())
+        return {
+            "scene": self.model.name,
+            "time": f"{self.time:.6g} of {self.clock.end:.6g}",
+            "steps": self.state.count,
+            "bodies": first_names(tuple(self.bodies)),
+            "cells": count_cells(self.state.mesh) or None,
+            "smallest gap": gap if np.isfinite(gap) else None,
+            "folder": None if self._writer is None else self._writer.out,
+        }
+
     def _refuse_closed(self) -> None:
         if self._writer is not None and self._writer.closed:
             remedy = "Make another Simulation, with resume=True to go on."
@@ -381,7 +413,7 @@ class Simulation:
             return
         with self.watch("write"):
             if count_cells(self.state.mesh):
-                self._writer.fields(self.system.backend.fields(self.state.fluid, self.state.mesh), self._times)
+                self._writer.fields(self.fields(), self._times)
             self._writer.checkpoint(self._checkpoint(self._writer, memory))
 
     def _checkpoint(self, writer: Writer, memory: FluidState) -> Checkpoint:

@@ -7,6 +7,7 @@ are free but must be consistent; ``d`` is the dimension.
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -30,6 +31,7 @@ from rigidfluid.core.scene.vectors import (
     NotNegativeAngular,
     Vector,
 )
+from rigidfluid.described import Described, first_names
 from rigidfluid.errors import SceneError
 from rigidfluid.regular_file import MOST_TEXT, require_regular
 
@@ -482,7 +484,7 @@ class OutputTable(_Table):
     probes: tuple[Vector, ...] = Field(default=(), description="Points that record velocity and pressure [length]")
 
 
-class Scene(_Table):
+class Scene(Described, _Table):
     """A whole scene, validated; `scene_from_dict` and `load_scene` are the ways to make one."""
 
     scene: SceneTable
@@ -534,6 +536,20 @@ class Scene(_Table):
     def dimension(self) -> int:
         """Number of space dimensions."""
         return self.scene.dimension
+
+    def _facts(self) -> Mapping[str, object]:
+        laws = [self.contact.law] if self.contact.law else []
+        return {
+            "name": self.name,
+            "dimension": self.dimension,
+            "domain": self.domain.type,
+            "fluid": self.fluid.backend,
+            "bodies": first_names([body.name for body in self.body]),
+            "mechanisms": first_names([one.name for one in self.mechanism]),
+            "joints": len(self.joint) or None,
+            "laws": first_names(laws + [one.law for one in self.interaction]),
+            "time": f"to {self.time.end:g} in steps of {self.time.step:g}",
+        }
 
     def to_dict(self) -> dict[str, Any]:
         """The tables again, in values that TOML and JSON can hold; `scene_from_dict` reads them back to an equal

@@ -26,6 +26,7 @@ from rigidfluid.core.setup.description import describe
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.core.setup.model_checks import check_model
 from rigidfluid.core.setup.rigid_body import JoinedBodies, PlacedMechanism, RigidBody
+from rigidfluid.described import Described, first_names
 from rigidfluid.registry import Registry
 
 ConditionMaker = Callable[[int, str, FloatArray | None], BoundaryCondition]
@@ -45,7 +46,7 @@ class ContactStepping:
 
 
 @checked
-class Model:
+class Model(Described):
     """Rigid bodies in a domain, with what is around them and between them: m dv/dt = (m - ρV)g + fluid + contacts.
 
     Nothing in it needs to be registered: a domain, a shape, a law, a condition or a size field may be any object of its
@@ -113,8 +114,23 @@ class Model:
     _scene: ClassVar[Scene | None] = None
     _detector_why: ClassVar[str] = "the model names it"
 
+    __repr__ = Described.__repr__  # in the place of the dataclass's own, which would tell every option
+
     def __post_init__(self) -> None:
         check_model(self)
+
+    def _facts(self) -> Mapping[str, object]:
+        return {
+            "name": self.name,
+            "dimension": self.dimension,
+            "domain": type(self.domain).__name__,
+            "fluid": self.fluid.backend.part.__name__,
+            "bodies": first_names([body.name for body in self.bodies]),
+            "mechanisms": first_names([placed.name for placed in self.mechanisms]),
+            "joints": len(self.joints) or None,
+            "laws": first_names([law.law.part.__name__ for law in self.laws]),
+            "time": f"to {self.time.end:g} in steps of {self.time.step:g}",
+        }
 
     def told_by(self, scene: Scene, detector_why: str) -> Model:
         """The same model, with the scene that it was made of for results and checkpoints, and why its detector was

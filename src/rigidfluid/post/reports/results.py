@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import json
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -20,6 +19,7 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.output.checkpoint import read_scene
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import Row, columns, joint_coordinates, moving
+from rigidfluid.core.output.summary_file import read_summary, unreadable
 from rigidfluid.core.output.tables import KINDS, read_rows
 from rigidfluid.core.output.vtu import read_pvd
 from rigidfluid.core.output.writer import CHECKPOINT, SERIES, SUMMARY
@@ -35,8 +35,6 @@ NEEDED = (
     *("rest_position", "energy"),
 )
 """Keys that the page takes from summary.json."""
-
-REMEDY = "Run the scene again, or go on with --resume; then make the report."
 
 
 @dataclass(frozen=True)
@@ -113,7 +111,7 @@ def read_results(folder: Path, *, motion_only: bool = False, model: Model | None
     plug-ins.
     """
     complete = not motion_only or (folder / SUMMARY).exists()
-    summary = _summary(folder / SUMMARY) if complete else {}
+    summary = read_summary(folder / SUMMARY, NEEDED) if complete else {}
     told = summary["scene"] if complete else read_scene(folder / CHECKPOINT)
     model = _model(told, folder) if model is None else _same(model, told, folder)
     system = assemble(model)
@@ -157,21 +155,6 @@ def _model(tables: dict[str, Any], folder: Path) -> Model:
     return model_of(scene_of_results(tables))
 
 
-def _summary(path: Path) -> dict[str, Any]:
-    try:
-        summary = json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise _unreadable(path, "no file") from None
-    except OSError as error:
-        raise _unreadable(path, error.strerror) from error
-    except (ValueError, RecursionError) as error:
-        raise _unreadable(path, f"no JSON ({error})") from error
-    missing = [key for key in NEEDED if key not in summary] if isinstance(summary, dict) else ["table"]
-    if missing:
-        raise _unreadable(path, f"no {missing[0]} in it")
-    return dict(summary)
-
-
 def _table(
     folder: Path, name: str, dimension: int, *, coordinates: Iterable[str] = COORDINATES, complete: bool = True
 ) -> dict[str, NDArray[Any]]:
@@ -200,26 +183,22 @@ def _rows(path: Path, names: Sequence[str], *, may_be_empty: bool = False, compl
             header = next(csv.reader(file), [])
         rows = read_rows(path, complete=complete)
     except FileNotFoundError:
-        raise _unreadable(path, "no file") from None
+        raise unreadable(path, "no file") from None
     except OSError as error:
-        raise _unreadable(path, error.strerror) from error
+        raise unreadable(path, error.strerror) from error
     except UnicodeDecodeError as error:
-        raise _unreadable(path, f"no text ({error})") from error
+        raise unreadable(path, f"no text ({error})") from error
     except ValueError as error:
-        raise _unreadable(path, str(error)) from error
+        raise unreadable(path, str(error)) from error
     if tuple(header) != tuple(names):
-        raise _unreadable(path, f"the columns {', '.join(header) or 'of no header'}")
+        raise unreadable(path, f"the columns {', '.join(header) or 'of no header'}")
     torn = next((number for number, row in enumerate(rows, start=2) if len(row) != len(names)), None)
     if torn is not None or not (rows or may_be_empty):
-        raise _unreadable(path, "no rows" if torn is None else f"a torn line {torn}")
+        raise unreadable(path, "no rows" if torn is None else f"a torn line {torn}")
     return rows
 
 
 def _per_state(path: Path, values: FloatArray, count: int) -> FloatArray:
     if len(values) % count:
-        raise _unreadable(path, f"{len(values)} rows, no multiple of the {count} that a state has")
+        raise unreadable(path, f"{len(values)} rows, no multiple of the {count} that a state has")
     return values.reshape(-1, count)
-
-
-def _unreadable(path: Path, found: object) -> OutputError:
-    return OutputError(str(path), found, "a file that a run of rigidfluid has written", REMEDY)

@@ -1,0 +1,69 @@
+"""Fields of the fluid at one time, in memory or from the disk, also as a grid of PyVista."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+import numpy as np
+
+from rigidfluid.core.model.types import Fields
+from rigidfluid.core.output.optional_package import optional_package
+from rigidfluid.core.output.vtu import QUADRATIC, in_space
+from rigidfluid.described import Described
+
+
+@dataclass(frozen=True, repr=False)
+class FluidFields(Described, Fields):
+    """Fields of the fluid at the nodes of its mesh at one time.
+
+    Parameters
+    ----------
+    points : FloatArray
+        (N, d) nodes, at the corners of cells and on the middle of their edges [length].
+    cells : IntArray
+        (M, 6) triangles or (M, 10) tetrahedra: numbers of their nodes in VTK's order.
+    velocity : FloatArray
+        (N, d) [length/time].
+    pressure : FloatArray
+        (N,) [force/length^(d-1)].
+    time : float
+        Time of the state [time].
+    """
+
+    time: float = field(kw_only=True)
+
+    @classmethod
+    def from_fields(cls, found: Fields, time: float) -> FluidFields:
+        """The same arrays with their time."""
+        return cls(**{one.name: getattr(found, one.name) for one in fields(found)}, time=time)
+
+    def grid(self) -> Any:
+        """Grid of PyVista with ``velocity``, in 2D too of three components, and ``pressure`` at its points.
+
+        Returns
+        -------
+        pyvista.UnstructuredGrid
+            N points and M quadratic cells.
+
+        Raises
+        ------
+        OutputError
+            If PyVista is not installed.
+        """
+        pyvista = optional_package("pyvista", "vtk")
+        grid = pyvista.UnstructuredGrid({QUADRATIC[self.cells.shape[1]]: self.cells}, in_space(self.points))
+        grid.point_data["velocity"] = in_space(self.velocity)
+        grid.point_data["pressure"] = self.pressure
+        return grid
+
+    def _facts(self) -> Mapping[str, object]:
+        return {
+            "time": self.time,
+            "cells": len(self.cells),
+            "nodes": len(self.points),
+            "dimension": self.points.shape[1],
+            "highest speed": float(np.linalg.norm(self.velocity, axis=1).max()),
+            "pressure": f"{self.pressure.min():.4g} to {self.pressure.max():.4g}",
+        }

@@ -1,0 +1,134 @@
+"""Results of a run read back from its folder, also while it goes on or after it was cut off."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigidfluid.core.case.load import scene_of_results
+from rigidfluid.core.case.scene_model import Case
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.output.checkpoint import read_scene
+from rigidfluid.core.output.fluid_fields import FluidFields
+from rigidfluid.core.output.history import History
+from rigidfluid.core.output.records import columns
+from rigidfluid.core.output.summary_file import read_summary
+from rigidfluid.core.output.tables import read_columns, read_header, table_path
+from rigidfluid.core.output.vtu import read_pvd, read_vtu
+from rigidfluid.core.output.writer import CHECKPOINT, SERIES, SUMMARY
+from rigidfluid.core.setup.description import IN_PYTHON
+from rigidfluid.errors import OutputError
+
+
+class RunResults(History):
+    """Tables, summary, scene and fields of a run in its folder, as `load_results` gives them.
+
+    Tables and fields are read when they are asked for. While the run goes on, a table ends with the latest state that
+    all tables have; the ``summary`` is that of the moment when the results were loaded, empty if there was none.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder that the run has written.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        has_ended = (folder / SUMMARY).exists()
+        if not has_ended and not (folder / CHECKPOINT).exists():
+            found = f"neither {SUMMARY} nor {CHECKPOINT}" if folder.is_dir() else "no such folder"
+            raise OutputError(str(folder), found, "the folder of a run", "Give the one that the run wrote, its --out.")
+        summary = read_summary(folder / SUMMARY) if has_ended else {}
+        self._document: Mapping[str, Any] = summary["scene"] if has_ended else read_scene(folder / CHECKPOINT)
+        dimension = self._document["scene"]["dimension"]
+        super().__init__(dimension, folder=folder, coordinates=_coordinates(folder, dimension))
+        self.summary, self.folder = summary, folder
+
+    @property
+    def scene(self) -> Case:
+        """Scene of the run; raises OutputError for a run of a model made in Python, and as `scene_from_dict` does."""
+        if IN_PYTHON in self._document:
+            found = f"results of the model {self._document['scene']['name']!r}, made in Python"
+            raise OutputError(str(self.folder), found, "results of a scene", "Make the model again as it was made.")
+        return scene_of_results(self._document)
+
+    @property
+    def times(self) -> FloatArray:
+        """Times (F,) of the fields on disk, none without a fluid [time]."""
+        return np.array([time for time, _ in self._series()])
+
+    def fields(self, time: float = math.inf) -> FluidFields:
+        """Read the fields of the output that is nearest to a time.
+
+        Parameters
+        ----------
+        time : float
+            Time of the state; the latest output if not given [time].
+
+        Returns
+        -------
+        FluidFields
+            Arrays, which are of 7 digits but for the points, and the time of the output.
+
+        Raises
+        ------
+        OutputError
+            If there are none, or a file cannot be read.
+        """
+        series = self._series()
+        if not series or math.isnan(time):
+            found = "no fields, as of a run without a fluid" if not series else "nan"
+            raise OutputError(f"{self.folder}, fields", found, "a time of an output with fields", "See `times`.")
+        nearest, path = min(series, key=lambda one: abs(one[0] - min(time, series[-1][0])))
+        return FluidFields.from_fields(read_vtu(path), nearest)
+
+    def table(self, name: str, only: Iterable[str] | None = None) -> dict[str, NDArray[Any]]:
+        """Read one table as `History.table` does, up to the latest state that all tables have."""
+        latest = super().table("energy", ("step",))["step"].max(initial=-1)  # of one state its row comes late
+        wanted = None if only is None else tuple(only)
+        found = super().table(name, None if wanted is None else (*wanted, "step"))
+        whole = found["step"] <= latest
+        return {column: values[whole] for column, values in found.items() if wanted is None or column in wanted}
+
+    def _read(self, path: Path, wanted: Sequence[str]) -> dict[str, NDArray[Any]]:
+        return read_columns(path, wanted, complete=False)
+
+    def _series(self) -> tuple[tuple[float, Path], ...]:
+        return read_pvd(self.folder / SERIES) if (self.folder / SERIES).exists() else ()
+
+    def _facts(self) -> Mapping[str, object]:
+        times = self.times
+        outputs = f"{len(times)}, from {times[0]:.4g} to {times[-1]:.4g}" if len(times) else None
+        return {**super()._facts(), "scene": self._document["scene"]["name"], "outputs with fields": outputs}
+
+
+def load_results(folder: str | Path) -> RunResults:
+    """Read the results of a run, complete or not, from its folder.
+
+    Parameters
+    ----------
+    folder : str or Path
+        The folder that `run` or the command was given.
+
+    Returns
+    -------
+    RunResults
+        Tables, scene, summary and fields.
+
+    Raises
+    ------
+    OutputError
+        If the folder has neither a summary nor a checkpoint, or they cannot be read.
+    """
+    return RunResults(Path(folder))
+
+
+def _coordinates(folder: Path, dimension: int) -> list[str]:
+    """Columns of the coordinates of joints, also of those that a plug-in names."""
+    path = table_path(folder, "joints")
+    known = columns(dimension, ())["joints"]
+    return [name for name in read_header(path) if name not in known] if path.exists() else []
