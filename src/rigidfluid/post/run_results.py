@@ -46,7 +46,8 @@ class RunResults(History):
         self._document: Mapping[str, Any] = summary["scene"] if has_ended else read_scene(folder / CHECKPOINT)
         dimension = self._document["scene"]["dimension"]
         super().__init__(dimension, folder=folder, coordinates=_coordinates(folder, dimension))
-        self.summary, self.folder = summary, folder
+        self.summary = summary
+        self.folder: Path = folder
 
     @property
     def scene(self) -> Case:

@@ -39,6 +39,8 @@ class History(Described):
     ----------
     summary : dict
         The content of summary.json; empty before the run has ended.
+    folder : Path or None
+        Folder of the tables on disk.
     """
 
     def __init__(
@@ -51,7 +53,7 @@ class History(Described):
         self.dimension, self._coordinates = dimension, tuple(coordinates)
         self.summary: dict[str, Any] = {}
         self._rows: Records = records or {}
-        self._folder = folder
+        self.folder = folder
 
     @property
     def columns(self) -> dict[str, tuple[str, ...]]:
@@ -61,9 +63,9 @@ class History(Described):
     @property
     def records(self) -> Records:
         """All rows by table name; raises OutputError as `table` does."""
-        if self._folder is None:
+        if self.folder is None:
             return self._rows
-        return {name: _rows(table_path(self._folder, name)) for name in self.columns}
+        return {name: _rows(table_path(self.folder, name)) for name in self.columns}
 
     @property
     def lengths(self) -> dict[str, int]:
@@ -76,7 +78,7 @@ class History(Described):
 
     def extend(self, records: Records) -> None:
         """Append the rows of one state, unless a writer puts them on disk."""
-        if self._folder is None:
+        if self.folder is None:
             for name, rows in records.items():
                 self._rows.setdefault(name, []).extend(rows)
 
@@ -103,8 +105,8 @@ class History(Described):
         """
         names = self.columns[name]
         wanted = tuple(names if only is None else only)
-        if self._folder is not None:
-            path = table_path(self._folder, name)
+        if self.folder is not None:
+            path = table_path(self.folder, name)
             with _reading(path):
                 known = wanted if only is not None else [name for name in read_header(path) if name in wanted]
                 return self._read(path, known or wanted)
@@ -142,7 +144,7 @@ class History(Described):
         return {
             "scene": found["scene"]["scene"]["name"] if "scene" in found else None,
             "status": found.get("status", "no summary yet"),
-            "folder": self._folder,
+            "folder": self.folder,
             **{key.replace("_", " "): found.get(key) for key in ("time", "steps", "remeshes", "cells", "smallest_gap")},
             "energy not accounted for": energy.get("relative_residual"),
         }

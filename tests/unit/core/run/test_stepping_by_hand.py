@@ -71,6 +71,22 @@ def test_bodies_are_told_by_name() -> None:
     assert paddle.gap == pytest.approx(0.2, abs=0.01)
 
 
+def test_fields_are_those_of_the_present_state() -> None:
+    simulation = Simulation(scene(BALL, DRIVEN))
+    simulation.go(until=0.1)
+    fields, paddle = simulation.fields(), simulation.bodies["paddle"].position
+    on_paddle = np.abs(np.linalg.norm(fields.points - paddle, axis=1) - 0.1) < 1e-3
+    assert on_paddle.sum() > 6
+    np.testing.assert_allclose(fields.velocity[on_paddle], [[0.0, 0.2]] * on_paddle.sum(), atol=1e-9)
+    np.testing.assert_allclose(fields.velocity[fields.points[:, 0] < 1e-12], 0.0, atol=1e-12)
+    assert fields.time == simulation.time
+
+
+def test_there_are_no_fields_without_a_fluid() -> None:
+    with pytest.raises(OutputError, match="found none, as 'by_hand' has no fluid; allowed is those of a scene"):
+        Simulation(scene(BALL, wet=False)).fields()
+
+
 def test_a_driven_body_takes_the_velocity_that_it_is_given() -> None:
     simulation = Simulation(scene(BALL, DRIVEN))
     simulation.go(until=0.2)

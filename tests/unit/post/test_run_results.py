@@ -1,0 +1,164 @@
+"""Results read back from a run's folder: complete, going on, cut off, dry, of a model made in Python."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scenes import Table, dry_tables, wet_tables
+
+import rigidfluid
+from rigidfluid.api import OutputError, Simulation, load_results, model_of, scene_from_dict
+
+DISK = {
+    "name": "disk",
+    "type": "sphere",
+    "radius": 0.1,
+    "density": 2.0,
+    "position": [0.5, 0.5],
+    "velocity": [0.0, -0.5],
+}
+TABLES = ("bodies", "contacts", "joints", "energy", "steps", "probes")
+
+
+def wet_scene(**tables: Any) -> Any:
+    probes = {"output": {"every": 0.02, "probes": [[0.2, 0.2], [0.8, 0.8]]}}
+    return scene_from_dict(wet_tables(DISK, end=0.04, **(probes | tables)))
+
+
+def dry_scene(*bodies: Table, **tables: Any) -> Any:
+    return scene_from_dict(dry_tables(*(bodies or (DISK,)), end=0.04, **({"output": {"every": 0.02}} | tables)))
+
+
+def test_a_complete_run_is_what_it_was_in_memory(tmp_path: Path) -> None:
+    history = rigidfluid.run(wet_scene())
+    rigidfluid.run(wet_scene(), tmp_path)
+    results = load_results(str(tmp_path))
+    for name in TABLES:
+        read = results.table(name)
+        assert list(read) == list(history.columns[name])
+        for column, values in history.table(name).items():
+            np.testing.assert_array_equal(read[column], values)
+    assert len(results.probes["time"]) == 2 * len(results.energy["time"]) > 10
+    assert results.summary["status"] == "complete"
+    assert results.scene == wet_scene()
+    assert list(results.table("bodies", ("vy",))) == ["vy"]
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_fields_of_an_output_are_those_of_the_simulation_then(dimension: int, tmp_path: Path) -> None:
+    body = DISK | {"position": [0.5] * dimension, "velocity": [0.0, -0.5, 0.0][:dimension], "radius": 0.2}
+    mesh = {"size": 0.4, "size_body": 0.2}
+    scene = scene_from_dict(wet_tables(body, end=0.02, mesh=mesh, output={"every": 0.01}))
+    simulation, kept = Simulation(scene, tmp_path), {}
+    kept[0.0] = simulation.fields()
+    simulation.observe(lambda now: kept.update({now.time: now.fields()}), every=0.01)
+    simulation.go()
+    simulation.close()
+    results = load_results(tmp_path)
+    np.testing.assert_allclose(results.times, [0.0, 0.01, 0.02])
+    for time, fields in kept.items():
+        read = results.fields(time + 0.003)
+        assert read.time == fields.time == time
+        np.testing.assert_array_equal(read.cells, fields.cells)
+        np.testing.assert_array_equal(read.points, fields.points)
+        np.testing.assert_allclose(read.velocity, fields.velocity, atol=1e-6)
+        np.testing.assert_allclose(read.pressure, fields.pressure, rtol=1e-6, atol=1e-6)
+    assert results.fields().time == 0.02
+    assert np.abs(results.fields().velocity).max() > 0.1
+
+
+def test_a_run_that_goes_on_has_whole_states_alone(tmp_path: Path) -> None:
+    other = DISK | {"name": "other", "position": [0.8, 0.8]}
+    simulation = Simulation(dry_scene(DISK, other), tmp_path)
+    simulation.go(until=0.02)
+    simulation.close()
+    results = load_results(tmp_path)
+    assert results.summary == {}
+    for table, torn in (("bodies", "0.03,3,disk,0.5,0.48,0.0"), ("energy", "0.03,3,1.")):
+        whole = (tmp_path / f"{table}.csv").read_text().splitlines()
+        # the next state is written up to its second row
+        text = [*whole, whole[-2 if table == "bodies" else -1].replace("0.02,2,", "0.03,3,"), torn]
+        (tmp_path / f"{table}.csv").write_text("\n".join(text if table == "bodies" else [*whole, torn]))
+    assert results.bodies["step"].tolist() == [0, 0, 1, 1, 2, 2]
+    assert results.energy["step"].tolist() == [0, 1, 2]
+    assert results.table("bodies", ("vy",))["vy"].shape == (6,)
+    assert results.scene == dry_scene(DISK, other)
+
+
+def test_tables_grow_while_the_run_goes_on(tmp_path: Path) -> None:
+    simulation = Simulation(wet_scene(), tmp_path)
+    results = load_results(tmp_path)
+    assert (results.bodies["time"].tolist(), results.times.tolist()) == ([0.0], [0.0])
+    simulation.go()
+    simulation.close()
+    assert results.bodies["step"].tolist() == list(range(simulation.state.count + 1))
+    assert results.fields().time == pytest.approx(0.04)
+
+
+def test_an_interrupted_run_says_so(tmp_path: Path) -> None:
+    def interrupt(now: Any) -> None:
+        if now.time > 0.015:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        rigidfluid.run(dry_scene(), tmp_path, progress=interrupt)
+    results = load_results(tmp_path)
+    assert results.summary["status"] == "interrupted"
+    assert results.bodies["step"].tolist() == [0, 1, 2]
+
+
+def test_coordinates_of_all_joints_have_their_columns(tmp_path: Path) -> None:
+    slider = {"name": "rail", "type": "slider", "between": ["disk"], "axis": [0.0, 1.0]}
+    history = rigidfluid.run(dry_scene(joint=[slider]), tmp_path)
+    results = load_results(tmp_path)
+    assert "displacement" in results.joints
+    np.testing.assert_array_equal(results.joints["displacement"], history.joints["displacement"])
+
+
+def test_without_a_fluid_there_are_no_fields(tmp_path: Path) -> None:
+    rigidfluid.run(dry_scene(), tmp_path)
+    results = load_results(tmp_path)
+    assert results.times.shape == (0,)
+    with pytest.raises(OutputError, match="no fields, as of a run without a fluid"):
+        results.fields()
+
+
+def test_no_time_is_no_output(tmp_path: Path) -> None:
+    Simulation(wet_scene(), tmp_path).close()
+    with pytest.raises(OutputError, match="found nan; allowed is a time"):
+        load_results(tmp_path).fields(float("nan"))
+
+
+def test_results_of_a_model_made_in_python_have_tables_and_no_scene(tmp_path: Path) -> None:
+    rigidfluid.run(replace(model_of(dry_scene()), name="mine"), tmp_path)
+    results = load_results(tmp_path)
+    assert len(results.bodies["time"]) == 5
+    with pytest.raises(OutputError, match="results of the model 'mine', made in Python"):
+        _ = results.scene
+    assert "scene: mine" in repr(results)
+
+
+@pytest.mark.parametrize(("name", "found"), [("", "neither summary.json nor state.h5"), ("missing", "no such folder")])
+def test_a_folder_of_no_run_is_refused(name: str, found: str, tmp_path: Path) -> None:
+    with pytest.raises(OutputError, match=f"found {found}; allowed is the folder of a run"):
+        load_results(tmp_path / name)
+
+
+def test_tables_are_frames_of_pandas(tmp_path: Path) -> None:
+    pytest.importorskip("pandas")
+    frame = rigidfluid.run(dry_scene(), tmp_path).frame("bodies")
+    assert frame.groupby("body")["y"].last()["disk"] == pytest.approx(0.48)
+    assert load_results(tmp_path).frame("energy").equals(rigidfluid.run(dry_scene()).frame("energy"))
+
+
+def test_who_lacks_a_package_is_told_how_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    history, fields = rigidfluid.run(dry_scene()), Simulation(wet_scene()).fields()
+    for name, extra, ask in (("pandas", "notebooks", lambda: history.frame("bodies")), ("pyvista", "vtk", fields.grid)):
+        monkeypatch.setitem(sys.modules, name, None)
+        with pytest.raises(OutputError, match=rf"{name}: the package is not installed.*rigidfluid\[{extra}\]"):
+            ask()
