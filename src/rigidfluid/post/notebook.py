@@ -94,7 +94,8 @@ def picture(history: History, plot: str, end: float) -> bytes:
         for name, colour in zip(dict.fromkeys(rows.tolist()), PALETTE, strict=False):
             one, form = rows == name, "." if table == "contacts" else "-"
             axes.plot(found["time"][one], found[column][one], form, color=colour, label=str(name))
-        axes.legend()
+        if len(rows):
+            axes.legend()
         data = io.BytesIO()
         figure.savefig(data, format="png")
     return data.getvalue()
