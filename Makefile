@@ -8,9 +8,10 @@ PLUGINS := $(wildcard plugins/*)
 # hangs ends its process, and the other goes on and names it.
 PARALLEL := -n 2 --dist worksteal --timeout-method thread
 PYTEST := $(BIN)/pytest $(PARALLEL)
-# Files in which tests need plug-ins, or PyVista as another reader of fields, and files in which they need DOLFINx.
+# Files in which tests need plug-ins, PyVista or notebooks, and files in which they need DOLFINx.
 WITH_PLUGINS := tests/unit/core/run/test_resumption.py tests/unit/core/run/test_shared_run.py tests/unit/benchmarks \
-	tests/unit/docs/test_validation_pages.py
+	tests/unit/docs/test_validation_pages.py tests/unit/core/output/test_fluid_fields.py tests/unit/post/test_run_results.py \
+	tests/unit/post/test_notebook.py tests/unit/docs/test_site_code.py::test_how_to_pages_run
 WITH_DOLFINX := tests/contract/test_fluid_backends.py tests/unit/backends/test_dolfinx.py \
 	tests/unit/benchmarks/test_backends_benchmark.py tests/unit/benchmarks/test_parallel_benchmark.py tests/mpi
 
@@ -97,7 +98,7 @@ clean:
 	touch $@
 
 .venv/.installed-plugins: $(PLUGINS:%=%/pyproject.toml) | .venv/.installed-test
-	$(BIN)/python -m pip install --quiet --editable '.[vtk]' $(PLUGINS:%=--editable %)
+	$(BIN)/python -m pip install --quiet --editable '.[vtk,notebooks]' $(PLUGINS:%=--editable %)
 	touch $@
 
 .venv/.installed-%: pyproject.toml | .venv/.created
