@@ -45,7 +45,7 @@ def licence(package: str) -> str:
     """Licence of a package in its metadata's shortest words."""
     about = metadata.metadata(package)
     for text in (about.get("License-Expression"), about.get("License")):
-        if text and len(text) < _LONG and "\n" not in text:
+        if text and text != "UNKNOWN" and len(text) < _LONG and "\n" not in text:
             return text
     classifiers = [text for text in about.get_all("Classifier") or () if text.startswith("License ::")]
     return ", ".join(text.rpartition(" :: ")[2] for text in classifiers) or "not stated"
