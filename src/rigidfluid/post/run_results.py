@@ -89,7 +89,8 @@ class RunResults(History):
 
     def table(self, name: str, only: Iterable[str] | None = None) -> dict[str, NDArray[Any]]:
         """Read one table as `History.table` does, up to the latest state that all tables have."""
-        latest = super().table("energy", ("step",))["step"].max(initial=-1)  # of one state its row comes late
+        # A state's rows of bodies, contacts and joints are written before its row here.
+        latest = super().table("energy", ("step",))["step"].max(initial=-1)
         wanted = None if only is None else tuple(only)
         found = super().table(name, None if wanted is None else (*wanted, "step"))
         whole = found["step"] <= latest

@@ -91,6 +91,16 @@ def test_the_picture_of_a_page_is_that_of_the_column(history: History, tmp_path:
     assert drawn[2] == 0
 
 
+def test_each_body_has_a_line_of_its_own(history: History, monkeypatch: pytest.MonkeyPatch) -> None:
+    figure = notebook.new_figure(6.0, 2.4)
+    monkeypatch.setattr(notebook, "new_figure", lambda width, height: figure)
+    picture(history, "bodies.y", 1.0)
+    lines, bodies = {line.get_label(): line for line in figure.axes[0].lines}, history.bodies
+    assert list(lines) == ["one", "other"]
+    for name, line in lines.items():
+        np.testing.assert_array_equal(line.get_ydata(), bodies["y"][bodies["body"] == name])
+
+
 @pytest.mark.parametrize("plot", ["energy.kinetic", "steps.size", "contacts.gap", "joints.rate", "probes.pressure"])
 def test_columns_of_all_tables_are_drawn(plot: str, history: History) -> None:
     assert picture(history, plot, 1.0).startswith(b"\x89PNG")
