@@ -12,7 +12,8 @@ from rigidfluid.core.scene.validation import read_table
 from rigidfluid.errors import RigidfluidError, SceneError
 from rigidfluid.post.studies.kernels import KERNELS
 from rigidfluid.post.studies.kernels.kernel import Kernel
-from rigidfluid.post.studies.model import Settings, Study
+from rigidfluid.post.studies.model import Study
+from rigidfluid.post.studies.strict_table import Settings
 from rigidfluid.post.studies.subject import Outcome, Target, tried
 
 

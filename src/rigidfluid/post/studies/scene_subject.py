@@ -12,7 +12,8 @@ from rigidfluid.core.run.run import simulate
 from rigidfluid.core.scene.overrides import assign
 from rigidfluid.core.scene.scene import Scene, read_toml
 from rigidfluid.post.studies.figure import check_figure, read_figure
-from rigidfluid.post.studies.model import ErrorTable, Settings, Study
+from rigidfluid.post.studies.model import ErrorTable, Study
+from rigidfluid.post.studies.strict_table import Settings
 from rigidfluid.post.studies.subject import Outcome, Target, tried
 
 
@@ -27,7 +28,7 @@ class SceneSubject:
         assert study.tables.error is not None
         self._fixed = study.tables.set
         self._figure = study.tables.error.figure
-        self._clock = study.tables.study.seconds
+        self._clock = study.tables.study.timed_by
         self._data = read_toml(study.scene)
         self._warm: set[str] = set()
         scenes, _ = tried(study.settings(), self._scene)
@@ -69,5 +70,5 @@ class SceneSubject:
 
 
 def _target(label: str, error: ErrorTable) -> Target:
-    against = "the finest run" if error.reference is None else f"{error.reference:g}"
+    against = f"{error.reference:g}" if isinstance(error.reference, float) else "the finest run"
     return Target(str(error.figure), error.reference, label or str(error.figure), against, error.relative)

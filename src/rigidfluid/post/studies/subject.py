@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from typing import Literal, Protocol, TypeVar
 
 from rigidfluid.errors import RigidfluidError
-from rigidfluid.post.studies.model import Settings
+from rigidfluid.post.studies.strict_table import Settings
 
 Made = TypeVar("Made")
 
@@ -24,13 +24,13 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Target:
-    """Name of the ``figure``, and its ``reference`` value, or None for its value in the finest run.
+    """Name of the ``figure``, and its ``reference`` value, "finest" for its value in the finest run, or None.
 
     ``of`` names the quantity with the error, ``against`` its reference, which divides the error with ``relative``.
     """
 
     figure: str
-    reference: float | None
+    reference: float | Literal["finest"] | None
     of: str
     against: str
     relative: bool
