@@ -54,7 +54,7 @@ def print_study(results: Results) -> None:
     failed = len(results.plan) - len(results.outcomes)
     reference = "" if results.reference is None else f"; reference {_figure(results.reference)}"
     tell(f"{len(results.plan)} runs, {failed} failed{reference}")
-    for one in sampled(results):
+    for one in (one for one in sampled(results) if len(one.known)):
         low, median, high = map(_figure, one.quantiles)
         about = f"{_knobs(one.variant)}: " if one.variant else ""
         tell(f"{about}{results.target.of}: median {median}, 5 to 95 % from {low} to {high}")

@@ -17,6 +17,9 @@ from rigidfluid.post.studies.strict_table import Settings
 
 _MARKERS = "osD^vP*X"
 
+WIDE = 10.0
+"""Ratio of positive values from which on their axis is logarithmic."""
+
 Lines = Mapping[tuple[str, ...], Sequence[tuple[float, float]]]
 """Points of each line, by its name of one or two parts."""
 
@@ -36,6 +39,15 @@ def draw_lines(axes: Axes, lines: Lines) -> list[Artist]:
     for word, marker in markers.items():
         named.append(Line2D([], [], color=BLACK, marker=marker, linestyle="none", label=word))
     return named
+
+
+def scale_axis(axes: Axes, values: Sequence[float]) -> None:
+    """Make the axis of a parameter logarithmic where its values are far apart."""
+    if min(values) > 0.0 and max(values) >= WIDE * min(values):
+        axes.set_xscale("log")
+        axes.xaxis.set_major_formatter("{x:g}")
+    else:
+        axes.locator_params(axis="x", nbins=5)
 
 
 def knob_words(results: Results, knob: str, settings: Settings) -> str:

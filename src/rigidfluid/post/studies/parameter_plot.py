@@ -11,13 +11,10 @@ from matplotlib.figure import Figure
 
 from rigidfluid.post.reports.curves import escape_dollars
 from rigidfluid.post.reports.style import new_figure
-from rigidfluid.post.studies.lines import draw_lines, settings_words
+from rigidfluid.post.studies.lines import draw_lines, scale_axis, settings_words
 from rigidfluid.post.studies.plot import error_label
 from rigidfluid.post.studies.results import Results
 from rigidfluid.post.studies.rows import text_of
-
-WIDE = 10.0
-"""Ratio of positive values from which on their axis is logarithmic."""
 
 
 def parameter_plot(results: Results) -> Figure:
@@ -72,6 +69,5 @@ def _label_axis(axes: Axes, results: Results) -> None:
     axes.set_xlabel(escape_dollars(first))
     if not _are_numbers(values):
         axes.set_xticks(range(len(values)), [escape_dollars(text_of(value)) for value in values])
-    elif min(values) > 0 and max(values) >= WIDE * min(values):
-        axes.set_xscale("log")
-        axes.xaxis.set_major_formatter("{x:g}")
+    else:
+        scale_axis(axes, values)

@@ -12,8 +12,7 @@ from matplotlib.figure import Figure
 
 from rigidfluid.post.reports.curves import add_legend, escape_dollars
 from rigidfluid.post.reports.style import PALETTE, new_figure
-from rigidfluid.post.studies.distributions import LogUniform
-from rigidfluid.post.studies.lines import settings_words
+from rigidfluid.post.studies.lines import scale_axis, settings_words
 from rigidfluid.post.studies.results import Results
 from rigidfluid.post.studies.sampled import Sampled
 
@@ -54,10 +53,7 @@ def _draw_samples(axes: Axes, results: Results, samples: Sequence[Sampled], name
         axes.plot(values, one.figures, ".", color=colour, alpha=0.5, markersize=4.0, label=label)
         axes.axhline(median, color=colour, linewidth=1.0)
         axes.axhspan(low, high, color=colour, alpha=0.1, linewidth=0.0)
-    random = results.study.tables.random
-    assert random is not None
-    if isinstance(random.parameters[name], LogUniform):
-        axes.set_xscale("log")
+    scale_axis(axes, values.tolist())
     axes.set_xlabel(escape_dollars(name))
 
 

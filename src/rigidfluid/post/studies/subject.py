@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal, Protocol, TypeVar
+from typing import Literal, Protocol
 
-from rigidfluid.errors import RigidfluidError
 from rigidfluid.post.studies.strict_table import Settings
-
-Made = TypeVar("Made")
 
 
 @dataclass(frozen=True)
@@ -49,22 +46,3 @@ class Subject(Protocol):
 
     def run(self, settings: Settings, progress: Callable[[float], None]) -> Outcome:
         """Run it, and tell ``progress`` how much is done, from 0 to 1; raises RigidfluidError where it fails."""
-
-
-def tried(
-    all_settings: Iterable[Settings], make: Callable[[Settings], Made]
-) -> tuple[list[Made], list[RigidfluidError]]:
-    """Subjects that ``make`` builds from the settings of a study, at least one, and the errors of invalid settings.
-
-    Raises the first error if no setting is valid: then the study is wrong, not a setting.
-    """
-    made: list[Made] = []
-    errors: list[RigidfluidError] = []
-    for settings in all_settings:
-        try:
-            made.append(make(settings))
-        except RigidfluidError as error:
-            errors.append(error)
-    if not made:
-        raise errors[0]
-    return made, errors
