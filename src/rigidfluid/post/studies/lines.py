@@ -8,6 +8,7 @@ from itertools import cycle
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from rigidfluid.post.reports.curves import escape_dollars
 from rigidfluid.post.reports.style import BLACK, PALETTE
@@ -45,7 +46,9 @@ def scale_axis(axes: Axes, values: Sequence[float]) -> None:
     """Make the axis of a parameter logarithmic where its values are far apart."""
     if min(values) > 0.0 and max(values) >= WIDE * min(values):
         axes.set_xscale("log")
+        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.xaxis.set_major_formatter("{x:g}")
+        axes.xaxis.set_minor_formatter(NullFormatter())
     else:
         axes.locator_params(axis="x", nbins=5)
 
