@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import os
 import pickle
-import sys
 from queue import SimpleQueue
 from threading import Thread
 from typing import Any
@@ -35,11 +34,13 @@ def main() -> None:
 
 def _listen(asked: SimpleQueue[tuple[Subject, Settings]]) -> None:
     """Take what is asked; end this process, in the middle of a run too, where who asks has ended."""
-    while True:
-        try:
-            asked.put(pickle.load(sys.stdin.buffer))
-        except EOFError:
-            os._exit(1)
+    # sys.stdin has a lock that would abort a process that ends by an error
+    with open(0, "rb", closefd=False) as questions:
+        while True:
+            try:
+                asked.put(pickle.load(questions))
+            except EOFError:
+                os._exit(1)
 
 
 if __name__ == "__main__":

@@ -180,7 +180,10 @@ def test_the_plot_shows_samples_quantiles_and_indices(tmp_path: Path) -> None:
         (random_table(8, HEIGHT.replace("0.2", "0.0")), ("position.1.deviation", "greater than 0")),
         (random_table(8, HEIGHT.replace("5.0", "'high'")), ("position.1.mean", "'high'", "a valid number")),
         (random_table(8, HEIGHT.replace('"normal"', '"norml"')), ("distribution", "'norml'", "Did you mean 'normal'?")),
-        (random_table(8, HEIGHT.replace('distribution = "normal", ', "")), ("distribution: found nothing", "'uniform'")),
+        (
+            random_table(8, HEIGHT.replace('distribution = "normal", ', "")),
+            ("distribution: found nothing", "'uniform'"),
+        ),
         (random_table(8, "fluid.gravity.1 = [1.0]\n"), ("random.parameters.fluid.gravity.1", "[1.0]")),
         (random_table(8, DENSITY.replace("density", "densty")), ("body.0.densty", "Did you mean 'density'?")),
         (random_table(1, DENSITY), ("random.number", "1", "greater than or equal to 2")),
