@@ -97,8 +97,8 @@ def test_only_what_is_missing_is_run_and_progress_counts_all(tmp_path: Path) -> 
 
 
 def test_a_process_that_ends_is_a_failed_run_and_another_one_goes_on(trouble: Trouble) -> None:
-    rows = rows_of(trouble, (*ANSWERS, *ANSWERS), jobs=2)
-    assert len(rows) == 2 * len(ANSWERS)
+    rows = rows_of(trouble, (*ANSWERS, "answer"), jobs=2)
+    assert len(rows) == len(ANSWERS) + 1
     for name, row in rows.items():
         deed = name.split()[1]
         assert row.message == {
