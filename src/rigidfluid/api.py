@@ -171,7 +171,7 @@ from rigidfluid.taylor_hood.sparse_backend import SparseOptions
 
 if TYPE_CHECKING:
     from rigidfluid.core.run.run import run
-    from rigidfluid.core.run.simulation import Simulation
+    from rigidfluid.core.run.simulation import BodyNow, SavedRun, Simulation
 
 __all__ = [
     "BODY",
@@ -193,6 +193,7 @@ __all__ = [
     "BarrierLaw",
     "BarrierOptions",
     "Body",
+    "BodyNow",
     "BoolArray",
     "BoundaryCondition",
     "Box",
@@ -305,6 +306,7 @@ __all__ = [
     "SameAxis",
     "SameOrientation",
     "SamePoint",
+    "SavedRun",
     "Scene",
     "SceneError",
     "SceneErrors",
@@ -369,10 +371,12 @@ __all__ = [
 
 
 def __getattr__(name: str) -> object:
-    """Import `run` and `Simulation` on first use: plug-ins are imported at every start and need no loop."""
+    """Import the loop's names on first use: plug-ins are imported at every start and need no loop."""
     if name not in _LOOP:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(_LOOP[name]), name)
 
 
-_LOOP = {"run": "rigidfluid.core.run.run", "Simulation": "rigidfluid.core.run.simulation"}
+_LOOP = {"run": "rigidfluid.core.run.run"} | dict.fromkeys(
+    ("BodyNow", "SavedRun", "Simulation"), "rigidfluid.core.run.simulation"
+)

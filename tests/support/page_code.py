@@ -31,7 +31,7 @@ class Block:
 
     def needs(self, package: str) -> bool:
         """Whether the block, or the file of a page that it runs, imports a package."""
-        return f"import {package}" in self.text
+        return re.search(rf"^(import|from) {package}\b", self.text, re.MULTILINE) is not None
 
 
 def page_blocks(page: Path) -> list[Block]:

@@ -93,6 +93,7 @@ def test_a_run_imports_only_what_its_scene_needs(
     assert unneeded & set(ended.stdout.split()) == set()
 
 
+@pytest.mark.long
 def test_compilation_is_told_once(tmp_path: Path) -> None:
     environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "cache")}
     command = [sys.executable, "-m", "rigidfluid", "run", str(SCENE), "--set", "time.end=0.001", "--out"]

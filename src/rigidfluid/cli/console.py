@@ -14,7 +14,7 @@ import typer
 from rich.console import Console
 from rich.text import Text
 
-from rigidfluid.core.run.process import Launch
+from rigidfluid.core.run.process import Launch, plain_interrupts
 from rigidfluid.errors import OutputError, RigidfluidError, SharedInterrupt
 
 FOUND_ERRORS = 1
@@ -33,7 +33,8 @@ def reported(on_interrupt: str = "") -> Iterator[None]:
     be that of one process alone, which then ends the others.
     """
     try:
-        yield
+        with plain_interrupts():
+            yield
     except RigidfluidError as error:
         raise refusal(error) from None
     except (typer.Exit, typer.Abort, typer.BadParameter):

@@ -147,6 +147,7 @@ class SparseDiscretisation:
         right_side[assembled.twists] += s.body_load[free].ravel()
         guess = self._guess(s, assembled.twists)
         scale = max(solver.norm(right_side), s.scale)
+        guess *= scale > 0.0  # what nothing drives is exactly at rest, and no residual could be small beside zero
         residual = right_side - assembled.apply(guess)
         enough, outdated = tolerance * scale, self._is_outdated(s.matrix)
         correction, _ = solver.solve(self._operator(assembled), residual, enough, outdated, s.again)

@@ -31,6 +31,7 @@ def rows_of(script, tmp_path, monkeypatch, *arguments):
     return json.loads(file.read_text())
 
 
+@pytest.mark.long
 def test_narrow_band_writes_a_row_for_each_band(narrow_band, tmp_path, monkeypatch, capsys):
     rows = rows_of(narrow_band, tmp_path, monkeypatch, "--refinement", "0.4")
     assert [row["dimension"] for row in rows] == [2] * 6 + [3] * 5

@@ -39,6 +39,7 @@ def test_a_page_has_the_ratio_to_each_way_and_all_stages(step):
         assert line in page
 
 
+@pytest.mark.long
 @pytest.mark.skipif(shutil.which("c++") is None, reason="there is no C++ compiler")
 def test_ways_lead_to_the_same_flow(ngsolve_step, monkeypatch):
     """To the tolerance where both are explicit in the convection, else to the error of the time step; also where the

@@ -38,6 +38,7 @@ def test_a_page_says_what_is_measured_and_what_is_stored(work_precision, tmp_pat
     assert (tmp_path / "picture.png").stat().st_size > 1000
 
 
+@pytest.mark.long
 def test_the_script_beside_falls_as_the_reference_does(work_precision):
     pytest.importorskip("ngsolve")
     assert work_precision.ngsolve(0.4, 0.3, 0.1, 0.005).error < 1e-2

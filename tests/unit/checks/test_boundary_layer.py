@@ -98,6 +98,7 @@ def test_a_layer_beside_which_torques_jumped_is_a_warning(size_body: float, grad
     assert "0.012" in remark.text
 
 
+@pytest.mark.long
 def test_a_run_tells_it_in_its_summary_and_report(tmp_path: Path) -> None:
     fluid = {"viscosity": 0.001}
     settings = {"time": {"end": 0.02, "step": 0.01}, "output": {"every": 0.02}}

@@ -54,6 +54,7 @@ def test_the_tutorial_runs(tmp_path: Path) -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("page", HOW_TO, ids=lambda page: page.stem)
 def test_how_to_pages_run(page: Path, tmp_path: Path) -> None:
+    """Programs that need a plug-in are left out where that is missing; its own tests run them."""
     folder = tmp_path / "session"
     folder.mkdir()
-    run_page(page, folder)
+    run_page(page, folder, frozenset(filter(is_missing, ["rigidfluid_gymnasium"])))

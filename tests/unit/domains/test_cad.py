@@ -93,6 +93,7 @@ def test_points_outside_a_wall_are_at_negative_distances(tmp_path: Path) -> None
     np.testing.assert_allclose(wall.signed_distance(np.array([[0.0, 1.25, 2.0], [5.0, 0.0, 9.0]])), [-0.25, -1.0])
 
 
+@pytest.mark.long
 def test_round_ends_are_known_as_disks(tmp_path: Path) -> None:
     """So that they can have a Poiseuille profile; and rectangles next to curved faces as rectangles."""
     tube = drawn(bent_tube(), tmp_path)

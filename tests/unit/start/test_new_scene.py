@@ -60,6 +60,7 @@ def test_what_is_written_passes_its_check_without_a_warning(flags: tuple[object,
 
 
 @pytest.mark.long
+@pytest.mark.long
 def test_units_change_numbers_and_not_the_run() -> None:
     runs = [check(scene) for scene in map(_made, ("cm", "m", "mm"))]
     weights = [report.bodies[0].submerged_weight[1] for report in runs]
@@ -85,6 +86,7 @@ def test_a_file_that_is_there_stays(tmp_path: Path) -> None:
     assert file.read_text() == "mine"
 
 
+@pytest.mark.long
 def test_what_cannot_be_is_refused(tmp_path: Path) -> None:
     assert "sphere, ellipsoid" in new(tmp_path / "a.toml", "--shape", "polygon", "--dimension", 3).stderr
     assert new(tmp_path / "a.toml", "--shape", "cube").exit_code == 2

@@ -99,6 +99,7 @@ def test_outcomes_are_known_until_sources_or_tests_change(mutants: ModuleType, p
     assert outcome(mutants, project, "a - b", "test_sums.py").verdict == "killed"
 
 
+@pytest.mark.long
 def test_tests_without_an_end_are_killed(mutants: ModuleType, project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(mutants, "PATIENCE", 5)
     loop = "def total(a, b):\n    while b <= 0:\n        pass"

@@ -104,6 +104,7 @@ class PetscDiscretisation:
         right_side[constraint.twist_slice] += s.body_load[free].ravel()[: constraint.twists]
         guess = constraint.reduced(s.velocity, s.twist, s.pressure - self._pressure_at_pin(s.pressure))
         scale = max(self._solvers.viscous.norm(right_side), s.scale)
+        guess *= scale > 0.0  # what nothing drives is exactly at rest, and no residual could be small beside zero
         residual = right_side - reduced.apply(guess)
         enough = tolerance * scale
         correction, _ = self._solvers.viscous.solve(_operator(reduced), residual, enough, again=s.again)

@@ -114,15 +114,22 @@ def remembered_interrupt(ranks: Ranks) -> Iterator[Callable[[], None]]:
     numbers = [number for number, own in heard if signal.getsignal(number) is own]
     before = {number: signal.signal(number, remember) for number in numbers}
     try:
-        with _other_losses_told():
+        with _other_losses_told(), plain_interrupts():
             yield ask
-    except SystemError as error:  # Python makes one of an interrupt within compiled code
-        if isinstance(error.__cause__, KeyboardInterrupt):
-            raise KeyboardInterrupt from error
-        raise
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+@contextmanager
+def plain_interrupts() -> Iterator[None]:
+    """Raise an interrupt that came within compiled code as one: Python makes a SystemError of it."""
+    try:
+        yield
+    except SystemError as error:
+        if isinstance(error.__cause__, KeyboardInterrupt):
+            raise KeyboardInterrupt from error
+        raise
 
 
 @contextmanager

@@ -76,6 +76,7 @@ def test_head_on_impact_of_unequal_balls_ends_at_the_smallest_gap(law: str, spee
     assert smallest_gap(scene(law, dimension, 0.0, lower, upper), speed, 0.0) == pytest.approx(SMALLEST, rel=0.02)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("gravity", "speed", "dimension"), [(*load, 2 + i % 2) for i, load in enumerate(LOADS)])
 @pytest.mark.parametrize("law", LAWS)
 def test_drop_onto_a_ball_ends_at_the_smallest_gap(law: str, gravity: float, speed: float, dimension: int) -> None:
@@ -110,6 +111,7 @@ def test_the_summary_is_silent_where_the_scene_gives_numbers() -> None:
     assert rigidfluid.run(scene_from_dict(data)).summary["auto_epsilon"] == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("dimension", DIMENSIONS)
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("densities", [(2.0, 2.0, 2.0), (2.0, 200.0, 200.0), (200.0, 2.0, 2.0)])

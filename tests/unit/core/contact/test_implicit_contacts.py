@@ -125,6 +125,7 @@ def test_a_tilted_ellipse_keeps_its_energy_where_steps_do_not_resolve_the_contac
     assert tilted(step) < 1e-6
 
 
+@pytest.mark.long
 def test_a_torque_of_the_wrong_sign_would_be_seen(monkeypatch):
     def flipped(*arguments):
         wrench = contact_wrench(*arguments)

@@ -220,6 +220,7 @@ def test_a_damped_ball_stops_turning():
     np.testing.assert_allclose(it.bodies["it"].angular_velocity, decay * np.array([1.0, -2.0, 0.5]), rtol=1e-8)
 
 
+@pytest.mark.long
 def test_sliders_are_told_resumed_and_drawn(tmp_path):
     """With a hinge: each has its own column, and a run goes on with the same bits."""
     bodies = [body(2.0, 3.0, name="cart"), bar(2.28, 2.8, name="bar")]

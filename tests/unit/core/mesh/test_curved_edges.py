@@ -78,6 +78,7 @@ def test_curved_edges_move_rigidly_with_their_body(around_an_ellipsoid) -> None:
     np.testing.assert_allclose(moved.curved.middles, expected, atol=1e-13)
 
 
+@pytest.mark.long
 def test_the_cells_volumes_are_the_domains_less_the_bodys(around_an_ellipsoid) -> None:
     """By the determinant of the quadratic map; straight cells have ten times the error."""
     body, _, _, mesh = around_an_ellipsoid

@@ -165,6 +165,7 @@ endsolid tetrahedron
 """
 
 
+@pytest.mark.long
 def test_a_file_of_the_scene_that_has_changed(tmp_path: Path) -> None:
     file, out = tmp_path / "body.stl", tmp_path / "out"
     file.write_text(SOLID)

@@ -89,6 +89,7 @@ def test_a_falling_disk_starts_with_short_steps_and_goes_on_with_long_ones(run):
     assert run.counts.rejected + np.count_nonzero(np.diff(sizes)) < 12
 
 
+@pytest.mark.long
 def test_a_fourth_of_the_tolerance_makes_less_than_half_of_the_error():
     def speeds(**time: float) -> float:
         simulation = Simulation(falling_disk(**SCENE, time={"step": 0.032, "end": 0.128} | time))

@@ -50,6 +50,7 @@ def test_it_is_the_flow_that_a_start_from_rest_ends_in() -> None:
     assert steady.bodies["fx"][-1] == pytest.approx(late.bodies["fx"][-1], rel=1e-4)
 
 
+@pytest.mark.long
 def test_a_flow_that_is_not_steady_is_refused_with_its_reynolds_number() -> None:
     with pytest.raises(SceneError, match=r"fluid\.initial: found 'steady' with .* Reynolds number of .*ramp"):
         run({"fluid": {"initial": "steady", "viscosity": 2e-4}}, boundary=CHANNEL)

@@ -81,6 +81,7 @@ def test_the_page_needs_no_other_file(fall: Path, written: list[Path]) -> None:
     assert f"{summary['peak_memory'] / 1e6:.5g}" in page
 
 
+@pytest.mark.long
 def test_the_same_run_gives_the_same_files(fall: Path, written: list[Path]) -> None:
     first = {path: path.read_bytes() for path in written}
     assert {path: path.read_bytes() for path in report(fall)} == first
@@ -94,6 +95,7 @@ def test_the_scene_on_the_page_is_a_scene(fall: Path, written: list[Path]) -> No
     assert tomllib.loads(text) == json.loads((fall / "summary.json").read_text())["scene"]
 
 
+@pytest.mark.long
 def test_a_backend_that_is_missing_here_has_its_report(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A run on a cluster, looked at elsewhere."""
     for package in ("dolfinx", "petsc4py", "mpi4py"):

@@ -124,6 +124,7 @@ def test_iterations_depend_neither_on_the_cells_nor_on_the_step(iterations):
     assert max(most) <= 30, most
 
 
+@pytest.mark.long
 def test_light_bodies_and_viscous_fluids_take_few_more(iterations):
     """Bodies turn with the fluid: without the velocities' response their own inertia would be far too heavy."""
     for body in BALLS["body"]:
@@ -165,6 +166,7 @@ def test_another_solver_is_refused_by_name():
         after(balls(solver="multigrid"), 1)
 
 
+@pytest.mark.long
 def test_a_run_by_blocks_is_resumed_to_the_last_bit(tmp_path):
     scene = balls(solver="schur").to_dict()
     first = scene | {"time": scene["time"] | {"end": 0.06}}

@@ -1,0 +1,69 @@
+"""Velocities and pressures on the boundary that an agent scales."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import ClassVar
+
+import numpy as np
+
+from rigidfluid.api import (
+    BoundaryCondition,
+    ConditionMaker,
+    FloatArray,
+    Model,
+    NoSlip,
+    PrescribedPressure,
+    PrescribedVelocity,
+    SceneError,
+)
+from rigidfluid_gymnasium.actions import Action
+from rigidfluid_gymnasium.course import Course
+
+
+@dataclass(frozen=True)
+class BoundaryFactor(Action):
+    """Factor on the velocity or pressure that the scene prescribes on a surface, that it reaches by the next action; 1
+    at the start [1]."""
+
+    start: ClassVar[float] = 1.0
+
+    def length(self, dimension: int) -> int:
+        return 1
+
+    def followed_by(self, model: Model, course: Course) -> Model:
+        """The model with the values scaled; raises SceneError where none are prescribed, or a factor at the bounds lets
+        more fluid in than out."""
+        if self.name not in model.domain.names:
+            allowed = f"a surface of the domain: {', '.join(model.domain.names)}"
+            raise SceneError("boundary", repr(self.name), allowed, "Name another.")
+        for limit in self.limits(model.dimension):
+            self._scaled(model, Course(limit))
+        return self._scaled(model, course)
+
+    def _scaled(self, model: Model, course: Course) -> Model:
+        maker = partial(_scaled_condition, make=model.boundary.get(self.name, NoSlip), course=course)
+        return replace(model, boundary={**model.boundary, self.name: maker})
+
+
+@dataclass(frozen=True)
+class _Scaled:
+    """A ``value(time, points)`` times the present factor of a ``course``."""
+
+    value: Callable[[float, FloatArray], FloatArray]
+    course: Course
+
+    def __call__(self, time: float, points: FloatArray) -> FloatArray:
+        return np.asarray(self.course.value(time)[0] * self.value(time, points))
+
+
+def _scaled_condition(
+    surface: int, name: str, normal: FloatArray | None, *, make: ConditionMaker, course: Course
+) -> BoundaryCondition:
+    condition = make(surface, name, normal)
+    if isinstance(condition, PrescribedVelocity | PrescribedPressure):
+        return replace(condition, value=_Scaled(condition.value, course))
+    found = f"{condition.type!r} on {name!r}"
+    raise SceneError(condition.field, found, "'velocity' or 'pressure', to be scaled", "Name another surface.")
