@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from time import monotonic
 
+from rigidfluid.core.output.disk import writing
 from rigidfluid.core.output.results_folder import Product, take_folder
 from rigidfluid.post.progress import Observer, begin_run
 from rigidfluid.post.studies.kernel_subject import KernelSubject
@@ -50,7 +51,11 @@ def run_study(
         results = Results(study, subject.target, list(distinct.values()), list(distinct), rows)
         _run_missing(results, subject, out / TABLE, jobs, progress)
         results = replace(results)
-        return results, [out / TABLE, *write_report(results, out)]
+        written = [out / TABLE, *write_report(results, out)]
+        with writing(out):
+            for earlier in set(STUDY.present(out)) - set(written):
+                earlier.unlink()
+        return results, written
 
 
 def _run_missing(results: Results, subject: Subject, path: Path, jobs: int, progress: Observer | None) -> None:

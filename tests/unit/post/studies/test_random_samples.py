@@ -157,6 +157,16 @@ def test_samples_that_fail_are_counted(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("product")
+def test_no_table_of_an_earlier_study_stays(tmp_path: Path) -> None:
+    results_of(falling_study(tmp_path, random_table(8, DENSITY, SPEED, more="indices = true")))
+    (tmp_path / "out" / "notes.csv").write_text("mine")
+    results_of(falling_study(tmp_path, random_table(8, DENSITY, SPEED)))
+    found = {path.name for path in (tmp_path / "out").iterdir()}
+    names = {f"study.{kind}" for kind in ("csv", "html", "lock", "png", "svg")}
+    assert found == names | {"quantiles.csv", "notes.csv"}
+
+
+@pytest.mark.usefixtures("product")
 def test_the_plot_shows_samples_quantiles_and_indices(tmp_path: Path) -> None:
     path = falling_study(tmp_path, random_table(8, DENSITY, SPEED, more="indices = true"))
     results = results_of(path)
