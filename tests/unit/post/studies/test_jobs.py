@@ -20,7 +20,7 @@ from rigidfluid.errors import ArgumentError, SceneError
 from rigidfluid.post.progress import RunsProgress
 from rigidfluid.post.python_process import environment, python
 from rigidfluid.post.studies import load_study, run_study
-from rigidfluid.post.studies.processes import MOST_JOBS, run_apart
+from rigidfluid.post.studies.processes import MOST_JOBS, ONE_THREAD, run_apart
 from rigidfluid.post.studies.rows import Row
 from rigidfluid.post.studies.strict_table import Settings
 from rigidfluid.post.studies.subject import Outcome, Target
@@ -53,13 +53,15 @@ class Trouble:
             time.sleep(1000.0)
         if settings["do"] == "print":
             os.write(1, b"words of a library\n")
-        names = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
+        names = [name for name in os.environ if name.endswith("_NUM_THREADS")]
         return Outcome(max(float(os.environ[name]) for name in names), os.getpid(), 0, 0)
 
 
 @pytest.fixture
 def trouble(monkeypatch: pytest.MonkeyPatch) -> Trouble:
     """Known by its module's name in other processes too."""
+    for name in ONE_THREAD:
+        monkeypatch.setenv(name, "2")
     monkeypatch.syspath_prepend(str(Path(__file__).parent))
     import test_jobs
 

@@ -43,7 +43,7 @@ def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
         gravity, step = settings["fluid.gravity.1"], settings.get("time.step", 0.25)
         if gravity > 0.0:
             raise SceneError("gravity", gravity, "down", "Turn it.")
-        return Outcome(gravity * (1.0 + step), 0.1, 0, round(0.5 / step))
+        return Outcome(gravity * (1.0 + step), -gravity, 0, round(0.5 / step))
 
     monkeypatch.setattr(SceneSubject, "run", run)
 

@@ -134,13 +134,18 @@ def test_a_figure_that_does_not_vary_has_no_indices(figures: Any) -> None:
     assert sobol_indices(figures, 2, 0) == []
 
 
-def test_quantiles_with_each_numerical_setting(tmp_path: Path) -> None:
+def test_quantiles_with_each_numerical_setting(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def run(self: SceneSubject, settings: dict[str, Any], _: object) -> Outcome:
+        return Outcome(settings["fluid.gravity.1"] + settings["time.step"], 0.1, 0, round(1.0 / settings["time.step"]))
+
+    monkeypatch.setattr(SceneSubject, "run", run)
     tables = random_table(3, GRAVITY) + "[vary]\ntime.step = [0.25, 0.125]\n"
     results = results_of(falling_study(tmp_path, tables, error='reference = "finest"'))
     assert len(results.groups) == 3
-    assert list(results.errors.values()) == pytest.approx([0.0] * 6, abs=1e-12)
+    assert list(results.errors.values()) == pytest.approx([0.125, 0.0] * 3)
     found = rows(tmp_path / "out" / "quantiles.csv")
     assert [(row["time.step"], row["runs"]) for row in found] == [("0.25", "3"), ("0.125", "3")]
+    assert float(found[0]["quantile_0.5"]) - float(found[1]["quantile_0.5"]) == pytest.approx(0.125)
     assert not (tmp_path / "out" / "indices.csv").exists()
 
 
