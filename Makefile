@@ -17,7 +17,8 @@ WITH_DOLFINX := tests/contract/test_fluid_backends.py tests/unit/backends/test_d
 
 # Each package that rigidfluid itself names is called somewhere here.
 WITH_LOWEST := $(addprefix tests/unit/,test_cli.py test_registry.py core/case core/scene core/output core/mesh/test_remesh.py \
-	domains/test_cad.py domains/test_mesh_domain.py marching/test_marching.py taylor_hood/test_factorization.py post/reports) \
+	domains/test_cad.py domains/test_mesh_domain.py marching/test_marching.py taylor_hood/test_factorization.py post/reports \
+	post/studies/test_random_samples.py) \
 	tests/contract/test_bodies.py tests/contract/test_force_laws.py
 
 .PHONY: run test test-lowest test-long test-plugins test-dolfinx install lint docs mutants pages validate nightly stale bench lock clean

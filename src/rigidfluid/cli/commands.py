@@ -26,6 +26,7 @@ from rigidfluid.cli.options import (
     Folder,
     Follow,
     FramesPerSecond,
+    Jobs,
     Looked,
     MeshFolder,
     MovieFile,
@@ -215,15 +216,15 @@ def movie(
 
 
 @app.command()
-def study(study: StudyFile, out: OutFolder = None, resume: Continue = True) -> None:
-    """Run a scene or a kernel with many settings, and plot the error against the run time."""
+def study(study: StudyFile, out: OutFolder = None, resume: Continue = True, jobs: Jobs = 1) -> None:
+    """Run a scene or a kernel with many settings; plot the error against the run time, or figures over parameters."""
     with reported("The same command goes on with the runs that are not done."):
         from rigidfluid.post.studies import load_study, run_study
 
         loaded = load_study(study)
         folder = out or Path("out") / loaded.name
         with runs_bar(loaded.name) as show:
-            results, written = run_study(loaded, folder, fresh=not resume, progress=show)
+            results, written = run_study(loaded, folder, fresh=not resume, jobs=jobs, progress=show)
         print_study(results)
         tell(f"wrote to {folder}: {', '.join(path.name for path in written)}")
 

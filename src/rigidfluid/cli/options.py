@@ -39,6 +39,10 @@ StudyFile = Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TO
 Continue = Annotated[
     bool, typer.Option("--resume/--fresh", help="Keep the runs that DIR holds already, or run everything again.")
 ]
+Jobs = Annotated[
+    int,
+    typer.Option("-j", "--jobs", metavar="N", help="N runs at a time, each in a process of its own with one thread."),
+]
 Backends = Annotated[
     list[str] | None,
     typer.Option("--backend", metavar="NAME", help="A fluid backend; name two or more.", autocompletion=_backend_names),

@@ -47,14 +47,31 @@ def print_insertion(figures: InsertionFigures) -> None:
 
 
 def print_study(results: Results) -> None:
-    """Print how many runs of a study there are, and the settings that no other ones beat in error and time."""
-    failed = len(results.plan) - sum(key in results.outcomes for key in results.prints)
-    tell(f"{len(results.plan)} runs, {failed} failed; reference {_figure(results.reference)}")
+    """Print how many runs of a study there are, and of random samples the figure's quantiles and Sobol indices, or the
+    settings that no other ones beat in error and time."""
+    from rigidfluid.post.studies.sampled import sampled
+
+    failed = len(results.plan) - len(results.outcomes)
+    reference = "" if results.reference is None else f"; reference {_figure(results.reference)}"
+    tell(f"{len(results.plan)} runs, {failed} failed{reference}")
+    for one in (one for one in sampled(results) if len(one.known)):
+        low, median, high = map(_figure, one.quantiles)
+        about = f"{_knobs(one.variant)}: " if one.variant else ""
+        tell(f"{about}{results.target.of}: median {median}, 5 to 95 % from {low} to {high}")
+        for name, index in one.indices.items():
+            first = f"{index.first:.2f} ± {index.first_confidence:.2f}"
+            total = f"{index.total:.2f} ± {index.total_confidence:.2f}"
+            tell(f"  {name}: first-order Sobol index {first}, total {total}")
+    if results.study.parameters:
+        return
     for settings, key in zip(results.plan, results.prints, strict=True):
         if key in results.front:
             seconds, error = results.points[key]
-            knobs = ", ".join(f"{knob} {value}" for knob, value in settings.items())
-            tell(f"on the Pareto front: {knobs}: error {_figure(error)} in {_figure(seconds)} s")
+            tell(f"on the Pareto front: {_knobs(settings)}: error {_figure(error)} in {_figure(seconds)} s")
+
+
+def _knobs(settings: Mapping[str, object]) -> str:
+    return ", ".join(f"{knob} {value}" for knob, value in settings.items())
 
 
 def print_end(history: History, folder: Path) -> None:

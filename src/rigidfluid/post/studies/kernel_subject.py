@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from rigidfluid.core.scene.overrides import assign
@@ -12,8 +12,9 @@ from rigidfluid.core.scene.validation import read_table
 from rigidfluid.errors import RigidfluidError, SceneError
 from rigidfluid.post.studies.kernels import KERNELS
 from rigidfluid.post.studies.kernels.kernel import Kernel
-from rigidfluid.post.studies.model import Settings, Study
-from rigidfluid.post.studies.subject import Outcome, Target, tried
+from rigidfluid.post.studies.model import Study
+from rigidfluid.post.studies.strict_table import Settings
+from rigidfluid.post.studies.subject import Outcome, Target
 
 
 class KernelSubject:
@@ -26,7 +27,7 @@ class KernelSubject:
         self._name = str(study.tables.study.kernel)
         self._kernel = _kernel(self._name)
         self._fixed = study.tables.set
-        kernels, errors = tried(study.settings(), self._made)
+        kernels, errors = self._tried(study.settings())
         for knob in [*study.tables.set, *study.knobs]:
             if not any(kernel.reads(knob) for kernel in kernels):
                 # of the settings that are not valid, one may have been meant to read it
@@ -50,6 +51,19 @@ class KernelSubject:
     def run(self, settings: Settings, progress: Callable[[float], None]) -> Outcome:
         """Run the kernel once; it decides what its seconds measure."""
         return self._made(settings).run(progress)
+
+    def _tried(self, all_settings: Iterable[Settings]) -> tuple[list[Kernel], list[RigidfluidError]]:
+        """Kernels with the valid ones of these settings, at least one, and the errors of the others."""
+        kernels: list[Kernel] = []
+        errors: list[RigidfluidError] = []
+        for settings in all_settings:
+            try:
+                kernels.append(self._made(settings))
+            except RigidfluidError as error:
+                errors.append(error)
+        if not kernels:
+            raise errors[0]
+        return kernels, errors
 
     def _made(self, settings: Settings) -> Kernel:
         tables: dict[str, Any] = {}

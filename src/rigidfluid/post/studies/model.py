@@ -4,44 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
-from math import prod
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
-from rigidfluid.core.scene.scene import read_toml
-from rigidfluid.core.scene.spelling import suggestion
-from rigidfluid.core.scene.validation import read_table
-from rigidfluid.errors import SceneError
+from rigidfluid.post.studies.samples import RandomTable, draw_samples
+from rigidfluid.post.studies.strict_table import Settings, StrictTable, flat
 
-Settings = dict[str, Any]
-"""Values by dotted key of the scene."""
+FINEST: Literal["finest"] = "finest"
+"""Reference that is the figure of the most expensive run of a group."""
 
-
-def _flat(value: Any) -> Any:
-    """``{"mesh": {"size": x}}`` as ``{"mesh.size": x}``: TOML reads a bare dotted key as tables."""
-    if not isinstance(value, Mapping):
-        return value
-    flat: Settings = {}
-    for key, part in value.items():
-        below = _flat(part)
-        flat |= {f"{key}.{rest}": leaf for rest, leaf in below.items()} if isinstance(part, Mapping) else {key: part}
-    return flat
+Lists = Annotated[dict[str, Annotated[list[Any], Field(min_length=1)]], BeforeValidator(flat)]
+"""Values by dotted key of the scene, or knob of the kernel."""
 
 
 def _listed(value: Any) -> Any:
     return [value] if isinstance(value, str) else value
 
 
-class _Table(BaseModel):
-    """A table whose keys are all given here."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
-
-
-class StudyTable(_Table):
+class StudyTable(StrictTable):
     """Subject of a study, and the combination of its settings."""
 
     name: str = Field(pattern=r"^[\w.-]*\w$", description="Name of the study; results go to `out/<name>` by default")
@@ -52,17 +36,22 @@ class StudyTable(_Table):
         default=[], max_length=2, description="Key of [vary], or two; the plot has a line for each of their values"
     )
     zip: bool = Field(default=False, description="Take the lists of [vary] side by side, not every combination")
-    seconds: Literal["wall", "cpu"] = Field(
-        default="wall", description="By which clock a run of a scene is timed; cpu where other programs run too"
+    seconds: Literal["wall", "cpu"] | None = Field(
+        default=None, description="By which clock a run of a scene is timed; cpu if not given"
     )
 
     @property
+    def timed_by(self) -> Literal["wall", "cpu"]:
+        """The clock that measures the seconds; calls of a kernel are timed by the one on the wall."""
+        return self.seconds or ("cpu" if self.kernel is None else "wall")
+
+    @property
     def clock(self) -> str:
-        """Name of the clock that measures the seconds."""
-        return "CPU time" if self.seconds == "cpu" else "wall time"
+        """Name of that clock."""
+        return "CPU time" if self.timed_by == "cpu" else "wall time"
 
 
-class FigureTable(_Table):
+class FigureTable(StrictTable):
     """A number that a run ends with: a key path of summary.json, or a column of a table at a time or its extreme."""
 
     key: str | None = Field(default=None, description="Key path of summary.json, as `energy.dissipation`")
@@ -108,26 +97,28 @@ class FigureTable(_Table):
         return " ".join(filter(None, (self.body, probe, self.column, moment)))
 
 
-class ErrorTable(_Table):
+class ErrorTable(StrictTable):
     """Figure, reference and scaling of the error."""
 
-    figure: FigureTable = Field(description="The figure whose error is studied")
-    reference: Annotated[float | None, BeforeValidator(lambda value: None if value == "finest" else value)] = Field(
-        description='What the figure should be: a number, or "finest", its value in the most expensive run'
+    figure: FigureTable = Field(description="The figure that is studied")
+    reference: float | Literal["finest"] | None = Field(
+        default=None,
+        description='What the figure should be: a number, or "finest", its value in the most expensive run with the '
+        "same parameters; without it there is no error",
     )
     relative: bool = Field(default=False, description="Divide the error by the reference")
 
 
-class StudyFile(_Table):
+class StudyFile(StrictTable):
     """A whole study file."""
 
     study: StudyTable
-    set: Annotated[Settings, BeforeValidator(_flat)] = Field(
+    set: Annotated[Settings, BeforeValidator(flat)] = Field(
         default={}, description="Values that all runs have, by dotted key of the scene, or knob of the kernel"
     )
-    vary: Annotated[dict[str, Annotated[list[Any], Field(min_length=1)]], BeforeValidator(_flat)] = Field(
-        min_length=1, description="Lists of values, by dotted key of the scene, or knob of the kernel"
-    )
+    vary: Lists = Field(default={}, description="Lists of numerical settings")
+    parameters: Lists = Field(default={}, description="Lists of values of physical parameters")
+    random: RandomTable | None = None
     error: ErrorTable | None = Field(default=None, description="The error; a kernel has its own")
 
 
@@ -153,66 +144,38 @@ class Study:
         """The scene file; None in the study of a kernel."""
         return None if self.tables.study.scene is None else self.path.parent / self.tables.study.scene
 
-    @property
+    @cached_property
+    def parameters(self) -> list[str]:
+        """Keys of the physical parameters."""
+        random = self.tables.random
+        return list(self.tables.parameters if random is None else random.parameters)
+
+    @cached_property
     def knobs(self) -> list[str]:
-        """Keys of the scene, or knobs of the kernel, that vary."""
-        return list(self.tables.vary)
+        """Keys of the scene, or knobs of the kernel, that vary: physical parameters, then numerical settings."""
+        return [*self.parameters, *self.tables.vary]
+
+    def values(self, knob: str) -> list[Any]:
+        """Values in the list of a knob."""
+        return (self.tables.parameters | self.tables.vary)[knob]
+
+    @cached_property
+    def groups(self) -> list[Settings]:
+        """Values of the physical parameters, one after the other: runs with the same ones are compared."""
+        random = self.tables.random
+        return _combinations(self.tables.parameters) if random is None else draw_samples(random)
+
+    @cached_property
+    def variants(self) -> list[Settings]:
+        """Numerical settings that each group is run with."""
+        return _combinations(self.tables.vary, side_by_side=self.tables.study.zip)
 
     def settings(self) -> list[Settings]:
         """The values of the knobs, run by run."""
-        lists = self.tables.vary.values()
-        rows = zip(*lists, strict=True) if self.tables.study.zip else product(*lists)
-        return [dict(zip(self.knobs, row, strict=True)) for row in rows]
+        return [group | variant for group in self.groups for variant in self.variants]
 
 
-def load_study(path: str | Path) -> Study:
-    """Read a study file (TOML), validated but for its scene or kernel.
-
-    Raises SceneError if it cannot be read, is no TOML, or has a value that is not allowed.
-    """
-    path = Path(path)
-    tables = read_table(StudyFile, read_toml(path, "study"))
-    _check_subject(tables)
-    _check_group(tables)
-    _check_lengths(tables)
-    _check_reference(tables)
-    return Study(tables, path, path.read_text(encoding="utf-8"))
-
-
-def _check_subject(tables: StudyFile) -> None:
-    scene, kernel = tables.study.scene, tables.study.kernel
-    if (scene is None) == (kernel is None):
-        found = "neither scene nor kernel" if scene is None else "scene and kernel"
-        raise SceneError("study", found, "one of scene and kernel", "Say what is run by one of them.")
-    if scene is not None and tables.error is None:
-        raise SceneError("error", "nothing", "a table", "Add the table [error].")
-    if kernel is not None and tables.error is not None:
-        raise SceneError("error", "a table", "nothing with study.kernel", "Remove it: a kernel has its own reference.")
-    if kernel is not None and tables.study.seconds == "cpu":
-        raise SceneError(
-            "study.seconds", "'cpu'", "'wall' with study.kernel", "Remove it: calls are timed by themselves."
-        )
-
-
-def _check_group(tables: StudyFile) -> None:
-    knobs = list(tables.vary)
-    for key in tables.study.group:
-        if key not in knobs:
-            remedy = suggestion(key, knobs) or "Name one of them, or leave it out."
-            raise SceneError("study.group", repr(key), f"a key of [vary]: {', '.join(knobs)}", remedy)
-
-
-def _check_lengths(tables: StudyFile) -> None:
-    lengths = {key: len(values) for key, values in tables.vary.items()}
-    if tables.study.zip and len(set(lengths.values())) > 1:
-        found = ", ".join(f"{length} values of {key}" for key, length in lengths.items())
-        raise SceneError("vary", found, "lists of one length with zip = true", "Complete the lists, or drop zip.")
-    runs = max(lengths.values()) if tables.study.zip else prod(lengths.values())
-    if runs > MOST_RUNS:
-        remedy = "Shorten the lists, or take them side by side."
-        raise SceneError("vary", f"{runs} runs", f"at most {MOST_RUNS}", remedy)
-
-
-def _check_reference(tables: StudyFile) -> None:
-    if tables.error is not None and tables.error.relative and tables.error.reference == 0:
-        raise SceneError("error.reference", 0, "another number with relative = true", "Set relative = false.")
+def _combinations(lists: Mapping[str, list[Any]], *, side_by_side: bool = False) -> list[Settings]:
+    """Every combination of the values, or one from each list side by side; an empty one without lists."""
+    rows = zip(*lists.values(), strict=True) if side_by_side and lists else product(*lists.values())
+    return [dict(zip(lists, row, strict=True)) for row in rows]

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import cycle
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from rigidfluid.post.reports.curves import escape_dollars
-from rigidfluid.post.reports.style import BLACK, PALETTE, new_figure
-from rigidfluid.post.studies.model import Settings
+from rigidfluid.post.reports.style import BLACK, new_figure
+from rigidfluid.post.studies.lines import draw_lines, knob_words
 from rigidfluid.post.studies.results import Results
-from rigidfluid.post.studies.rows import short_text
+from rigidfluid.post.studies.strict_table import Settings
 
-_MARKERS = "osD^vP*X"
 CROWDED = 300.0
 """Ratio of times from which on only powers of ten have a label, as others would run into each other."""
 
@@ -29,7 +26,7 @@ def error_plot(results: Results) -> Figure:
     """
     figure = new_figure(9.0, 5.0)
     axes = figure.subplots()
-    shown = [*_draw_lines(axes, results), _draw_front(axes, results)]
+    shown = [*draw_lines(axes, _lines(results)), _draw_front(axes, results)]
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.xaxis.set_major_formatter("{x:g}")
@@ -52,30 +49,13 @@ def error_label(results: Results) -> str:
     return f"{kind} of {results.target.of}\nagainst {results.target.against}"
 
 
-def _draw_lines(axes: Axes, results: Results) -> list[Artist]:
-    """Draw the lines; return the artists that stand for them in the legend."""
-    series = _series(results)
-    colours = dict(zip(dict.fromkeys(words[0] for words in series), cycle(PALETTE)))
-    markers = dict(zip(dict.fromkeys(words[-1] for words in series), cycle(_MARKERS)))
-    drawn: list[Artist] = []
-    for words, keys in series.items():
-        colour, marker = colours[words[0]], markers[words[-1]]
-        drawn += axes.plot(*_coordinates(results, keys), color=colour, marker=marker, linewidth=1.0, label=words[0])
-    if len(results.study.tables.study.group) < 2:
-        return drawn
-    named: list[Artist] = [Line2D([], [], color=colour, label=word) for word, colour in colours.items()]
-    for word, marker in markers.items():
-        named.append(Line2D([], [], color=BLACK, marker=marker, linestyle="none", label=word))
-    return named
-
-
-def _series(results: Results) -> dict[tuple[str, ...], list[str]]:
-    """Fingerprints of the points by values of the group, all in the order of the study file."""
-    series: dict[tuple[str, ...], list[str]] = {}
+def _lines(results: Results) -> dict[tuple[str, ...], list[tuple[float, float]]]:
+    """Points by values of the group, all in the order of the study file."""
+    lines: dict[tuple[str, ...], list[tuple[float, float]]] = {}
     for key, settings in _settings(results).items():
-        words = tuple(_words(results, knob, settings.get(knob)) for knob in results.study.tables.study.group)
-        series.setdefault(words or ("runs",), []).append(key)
-    return series
+        name = tuple(knob_words(results, knob, settings) for knob in results.study.tables.study.group)
+        lines.setdefault(name or ("runs",), []).append(results.points[key])
+    return lines
 
 
 def _settings(results: Results) -> dict[str, Settings]:
@@ -89,22 +69,9 @@ def _limits(values: Sequence[float]) -> tuple[float, float]:
     return low / room, high * room
 
 
-def _words(results: Results, knob: str, value: object) -> str:
-    """A setting in few words; None for runs that do not read it."""
-    short = knob.rpartition(".")[2]
-    if value is None:
-        return f"without {short}"
-    text = short_text(value, results.study.tables.vary[knob])
-    return escape_dollars(text if isinstance(value, dict) else f"{short} {text}")
-
-
-def _coordinates(results: Results, keys: list[str]) -> tuple[list[float], list[float]]:
-    return [results.points[key][0] for key in keys], [results.points[key][1] for key in keys]
-
-
 def _draw_front(axes: Axes, results: Results) -> Artist:
     """Mark the front's runs and write their knobs next to them, but for the group, which the lines tell."""
-    seconds, errors = _coordinates(results, results.front)
+    seconds, errors = zip(*(results.points[key] for key in results.front), strict=True)
     axes.plot(seconds, errors, drawstyle="steps-post", color=BLACK, alpha=0.15, linewidth=6.0, zorder=0)
     (rings,) = axes.plot(
         seconds, errors, "o", color=BLACK, markersize=13, fillstyle="none", label="Pareto front", zorder=0
@@ -112,6 +79,6 @@ def _draw_front(axes: Axes, results: Results) -> Artist:
     shown = [key for key in results.study.knobs if key not in results.study.tables.study.group]
     settings = _settings(results)
     for key in results.front:
-        words = "\n".join(_words(results, knob, settings[key][knob]) for knob in shown if knob in settings[key])
+        words = "\n".join(knob_words(results, knob, settings[key]) for knob in shown if knob in settings[key])
         axes.annotate(words, results.points[key], (9, 7), textcoords="offset points", fontsize=8)
     return rings

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeVar
 
-from rigidfluid.post.studies.model import Settings, Study
+from rigidfluid.post.studies.model import FINEST, Study
 from rigidfluid.post.studies.rows import Row
+from rigidfluid.post.studies.strict_table import Settings
 from rigidfluid.post.studies.subject import Outcome, Target
 
 K = TypeVar("K")
@@ -37,29 +39,46 @@ class Results:
         return {key: outcome for key, outcome in done.items() if outcome is not None}
 
     @cached_property
-    def finest(self) -> str | None:
-        """Fingerprint of the run that is the reference; None if a number is, or if no run is done."""
-        if self.target.reference is not None or not self.outcomes:
-            return None
-        return most_expensive(self.outcomes)
+    def groups(self) -> list[list[str]]:
+        """Fingerprints of the runs with the same physical parameters, which share a reference."""
+        groups: dict[str, list[str]] = {}
+        for settings, key in zip(self.plan, self.prints, strict=True):
+            same = json.dumps([settings[name] for name in self.study.parameters], default=str)
+            groups.setdefault(same, []).append(key)
+        return list(groups.values())
+
+    @cached_property
+    def finest(self) -> dict[str, str]:
+        """Fingerprint of the run that is the reference of each one that is done; none if these are given."""
+        if self.target.reference != FINEST:
+            return {}
+        done = ([key for key in group if key in self.outcomes] for group in self.groups)
+        best = {most_expensive({key: self.outcomes[key] for key in group}): group for group in done if group}
+        return {key: finest for finest, group in best.items() for key in group}
+
+    @cached_property
+    def references(self) -> dict[str, float]:
+        """Reference value of each figure, by fingerprint."""
+        if isinstance(self.target.reference, float):
+            return dict.fromkeys(self.outcomes, self.target.reference)
+        return {key: self.outcomes[finest].figure for key, finest in self.finest.items()}
 
     @property
     def reference(self) -> float | None:
-        """Reference value of the figure; None if it is not known yet."""
-        return self.target.reference if self.finest is None else self.outcomes[self.finest].figure
+        """The reference value of all figures; None if there is none yet, or one in each group."""
+        values = set(self.references.values())
+        return values.pop() if len(values) == 1 else None
 
     @property
     def is_relative(self) -> bool:
-        """Whether errors are divided by the reference: if asked for, and if it is not 0."""
-        return self.target.relative and self.reference != 0
+        """Whether errors are divided by the reference: if asked for, and if none is 0."""
+        return self.target.relative and 0 not in self.references.values()
 
     @cached_property
     def errors(self) -> dict[str, float]:
         """|figure - reference|, over |reference| if relative, by fingerprint."""
-        if self.reference is None:
-            return {}
-        scale = abs(self.reference) if self.is_relative else 1.0
-        return {key: abs(outcome.figure - self.reference) / scale for key, outcome in self.outcomes.items()}
+        apart = {key: abs(self.outcomes[key].figure - value) for key, value in self.references.items()}
+        return {key: error / abs(self.references[key]) if self.is_relative else error for key, error in apart.items()}
 
     @cached_property
     def points(self) -> dict[str, tuple[float, float]]:
@@ -69,8 +88,9 @@ class Results:
 
     @cached_property
     def front(self) -> list[str]:
-        """Fingerprints of the points that no other beats, by seconds."""
-        return pareto_front(self.points)
+        """Fingerprints of the points that no other of their group beats, by seconds in each."""
+        groups = ({key: self.points[key] for key in group if key in self.points} for group in self.groups)
+        return [key for group in groups for key in pareto_front(group)]
 
 
 def most_expensive(outcomes: Mapping[K, Outcome]) -> K:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from rigidfluid.post.studies.model import Settings
-from rigidfluid.post.studies.subject import Outcome
+from rigidfluid.errors import RigidfluidError
+from rigidfluid.post.studies.strict_table import Settings
+from rigidfluid.post.studies.subject import Outcome, Subject
 
 COMPLETE, FAILED = "complete", "failed"
 
@@ -25,6 +26,14 @@ class Row:
     def status(self) -> str:
         """ "complete" or "failed"."""
         return FAILED if self.outcome is None else COMPLETE
+
+
+def try_run(subject: Subject, settings: Settings, progress: Callable[[float], None]) -> Row:
+    """The row of a run, failed or not."""
+    try:
+        return Row(subject.run(settings, progress))
+    except RigidfluidError as error:
+        return Row(None, str(error))
 
 
 def fingerprint(identity: str) -> str:
@@ -43,6 +52,11 @@ def short_text(value: Any, among: Sequence[Any]) -> str:
         return text_of(value)
     differing = [key for key, part in value.items() if any(other.get(key) != part for other in among)]
     return ", ".join(f"{key} {text_of(value[key])}" for key in differing)
+
+
+def words(settings: Settings) -> str:
+    """All settings of a run in one line."""
+    return ", ".join(f"{name} {text_of(value)}" for name, value in settings.items())
 
 
 def cells(knobs: Sequence[str], settings: Settings) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from copy import deepcopy
 from typing import Any
 
@@ -11,9 +11,11 @@ from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.run.run import simulate
 from rigidfluid.core.scene.overrides import assign
 from rigidfluid.core.scene.scene import Scene, read_toml
+from rigidfluid.errors import RigidfluidError
 from rigidfluid.post.studies.figure import check_figure, read_figure
-from rigidfluid.post.studies.model import ErrorTable, Settings, Study
-from rigidfluid.post.studies.subject import Outcome, Target, tried
+from rigidfluid.post.studies.model import ErrorTable, Study
+from rigidfluid.post.studies.strict_table import Settings
+from rigidfluid.post.studies.subject import Outcome, Target
 
 
 class SceneSubject:
@@ -27,11 +29,10 @@ class SceneSubject:
         assert study.tables.error is not None
         self._fixed = study.tables.set
         self._figure = study.tables.error.figure
-        self._clock = study.tables.study.seconds
+        self._clock = study.tables.study.timed_by
         self._data = read_toml(study.scene)
         self._warm: set[str] = set()
-        scenes, _ = tried(study.settings(), self._scene)
-        check_figure(self._figure, scenes[0])
+        check_figure(self._figure, self._first_scene(study.settings()))
         self.target = _target(study.tables.study.label, study.tables.error)
 
     def read(self, settings: Settings) -> Settings:
@@ -61,6 +62,16 @@ class SceneSubject:
     def _scene(self, settings: Settings) -> Scene:
         return scene_from_dict(self._tables(settings))
 
+    def _first_scene(self, all_settings: Iterable[Settings]) -> Scene:
+        """The first one that is valid; raises the first error if none is: then the study is wrong, not a setting."""
+        errors: list[RigidfluidError] = []
+        for settings in all_settings:
+            try:
+                return self._scene(settings)
+            except RigidfluidError as error:
+                errors.append(error)
+        raise errors[0]
+
     def _warm_up(self, scene: Scene) -> None:
         """One step that is not measured, so that no backend's first run pays for imports and compiled kernels."""
         if scene.fluid.backend not in self._warm:
@@ -69,5 +80,5 @@ class SceneSubject:
 
 
 def _target(label: str, error: ErrorTable) -> Target:
-    against = "the finest run" if error.reference is None else f"{error.reference:g}"
+    against = f"{error.reference:g}" if isinstance(error.reference, float) else "the finest run"
     return Target(str(error.figure), error.reference, label or str(error.figure), against, error.relative)

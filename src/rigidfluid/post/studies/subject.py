@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from typing import Literal, Protocol
 
-from rigidfluid.errors import RigidfluidError
-from rigidfluid.post.studies.model import Settings
-
-Made = TypeVar("Made")
+from rigidfluid.post.studies.strict_table import Settings
 
 
 @dataclass(frozen=True)
@@ -24,13 +21,13 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Target:
-    """Name of the ``figure``, and its ``reference`` value, or None for its value in the finest run.
+    """Name of the ``figure``, and its ``reference`` value, "finest" for its value in the finest run, or None.
 
     ``of`` names the quantity with the error, ``against`` its reference, which divides the error with ``relative``.
     """
 
     figure: str
-    reference: float | None
+    reference: float | Literal["finest"] | None
     of: str
     against: str
     relative: bool
@@ -49,22 +46,3 @@ class Subject(Protocol):
 
     def run(self, settings: Settings, progress: Callable[[float], None]) -> Outcome:
         """Run it, and tell ``progress`` how much is done, from 0 to 1; raises RigidfluidError where it fails."""
-
-
-def tried(
-    all_settings: Iterable[Settings], make: Callable[[Settings], Made]
-) -> tuple[list[Made], list[RigidfluidError]]:
-    """Subjects that ``make`` builds from the settings of a study, at least one, and the errors of invalid settings.
-
-    Raises the first error if no setting is valid: then the study is wrong, not a setting.
-    """
-    made: list[Made] = []
-    errors: list[RigidfluidError] = []
-    for settings in all_settings:
-        try:
-            made.append(make(settings))
-        except RigidfluidError as error:
-            errors.append(error)
-    if not made:
-        raise errors[0]
-    return made, errors

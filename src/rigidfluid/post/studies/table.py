@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from rigidfluid.core.output.disk import replace_text, writing
@@ -21,14 +21,24 @@ def write_rows(path: Path, results: Results) -> None:
 
     Raises OutputError if the disk refuses.
     """
-    text, knobs = io.StringIO(newline=""), results.study.knobs
+    knobs = results.study.knobs
+    lines = (
+        [*cells(knobs, settings), *_results(results.rows[key], results.errors.get(key)), key]
+        for settings, key in zip(results.plan, results.prints, strict=True)
+        if key in results.rows
+    )
+    write_grid(path, ((*knobs, *_RESULTS), lines))
+
+
+def write_grid(path: Path, grid: tuple[Iterable[str], Iterable[Iterable[object]]]) -> Path:
+    """Write a header and rows; return the path. Raises OutputError if the disk refuses."""
+    text = io.StringIO(newline="")
     table = csv.writer(text, lineterminator="\n")
-    table.writerow([*knobs, *_RESULTS])
-    for settings, key in zip(results.plan, results.prints, strict=True):
-        if key in results.rows:
-            table.writerow([*cells(knobs, settings), *_results(results.rows[key], results.errors.get(key)), key])
+    table.writerow(grid[0])
+    table.writerows(grid[1])
     with writing(path):
         replace_text(path, text.getvalue())
+    return path
 
 
 def _results(row: Row, error: float | None) -> list[object]:

@@ -6,7 +6,7 @@ import csv
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -25,14 +25,17 @@ from rigidfluid.errors import OutputError, SceneError
 from rigidfluid.post.progress import RunsProgress
 from rigidfluid.post.reports.style import PALETTE
 from rigidfluid.post.studies import load_study, run_study, scene_subject
+from rigidfluid.post.studies.distributions import LogUniform, Normal, Uniform
 from rigidfluid.post.studies.figure import check_figure, read_figure
 from rigidfluid.post.studies.kernel_subject import KernelSubject
-from rigidfluid.post.studies.model import ErrorTable, FigureTable, Settings, StudyTable
+from rigidfluid.post.studies.model import ErrorTable, FigureTable, StudyFile, StudyTable
 from rigidfluid.post.studies.plot import error_plot
 from rigidfluid.post.studies.results import Results, most_expensive, pareto_front
 from rigidfluid.post.studies.rows import short_text
 from rigidfluid.post.studies.run import STUDY as FILES
+from rigidfluid.post.studies.samples import RandomTable
 from rigidfluid.post.studies.scene_subject import SceneSubject
+from rigidfluid.post.studies.strict_table import Settings
 from rigidfluid.post.studies.subject import Outcome
 from rigidfluid.post.studies.table import read_rows
 from rigidfluid.registry import FLUID_BACKEND, Registry
@@ -173,7 +176,7 @@ def test_the_page_needs_no_other_file(write: Write, tmp_path: Path) -> None:
     for text in ("body.0.density = [1.0, 2.0]", "name = &quot;dry_bounce&quot;", "numpy", "Pareto front"):
         assert text in page
     plot = written[2].read_text(encoding="utf-8")
-    for text in ("density 1.0", "density 2.0", "Pareto front", "wall time [s]", "error of height of the left disk"):
+    for text in ("density 1.0", "density 2.0", "Pareto front", "CPU time [s]", "error of height of the left disk"):
         assert f"<!-- {text} -->" in plot
 
 
@@ -223,11 +226,11 @@ def test_backends_that_are_not_there_are_failed_rows(write: Write, tmp_path: Pat
 
 def test_errors_against_the_finest_run(write: Write, tmp_path: Path) -> None:
     results = results_of(write("reference = 0.5", 'reference = "finest"\nrelative = true'), tmp_path / "out")
-    assert results.finest is not None
-    assert results.outcomes[results.finest].steps == 8
-    assert results.errors[results.finest] == 0
-    assert results.finest not in results.points
-    reference = results.outcomes[results.finest].figure
+    (finest,) = set(results.finest.values())
+    assert results.outcomes[finest].steps == 8
+    assert results.errors[finest] == 0
+    assert finest not in results.points
+    reference = results.outcomes[finest].figure
     first = results.prints[0]
     assert results.errors[first] == pytest.approx(abs(results.outcomes[first].figure / reference - 1), rel=1e-9)
     assert results.errors[first] > 1e-5
@@ -501,12 +504,22 @@ def test_tables_are_named_by_what_differs() -> None:
 def test_every_key_of_a_study_is_explained() -> None:
     page = (SCENES.parent / "docs" / "studies.md").read_text(encoding="utf-8")
     keys = [f"study.{key}" for key in StudyTable.model_fields] + [f"error.{key}" for key in ErrorTable.model_fields]
+    keys += [f"[{key}]" for key in StudyFile.model_fields if key not in ("study", "error")]
     assert [key for key in keys if f"| `{key}` |" not in page] == []
     assert [key for key in FigureTable.model_fields if key != "key" and key not in page] == []
+    assert [key for key in RandomTable.model_fields if key != "parameters" and f"\n{key} = " not in page] == []
+    for table in (Uniform, LogUniform, Normal):
+        (name,) = get_args(table.model_fields["distribution"].annotation)
+        assert f'distribution = "{name}"' in page
 
 
-def test_the_example_of_the_page_is_a_study(tmp_path: Path) -> None:
+def test_the_examples_of_the_page_are_studies(tmp_path: Path) -> None:
     page = (SCENES.parent / "docs" / "studies.md").read_text(encoding="utf-8")
-    path = tmp_path / "example.toml"
-    path.write_text(page.partition("```toml\n")[2].partition("```")[0].replace("../scenes", str(SCENES)))
-    SceneSubject(load_study(path))
+    step, sweep, random = page.replace("../scenes", str(SCENES)).split("```toml\n")[1:4]
+    parts = {name: text.partition("```")[0] for name, text in (("step", step), ("sweep", sweep), ("random", random))}
+    head, _, rest = parts["sweep"].partition("[parameters]")
+    parts["random"] = f"{head}{parts['random']}[vary]{rest.partition('[vary]')[2]}"
+    for name, text in parts.items():
+        path = tmp_path / f"{name}.toml"
+        path.write_text(text)
+        SceneSubject(load_study(path))
