@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from pages._staggered import RADIUS, SIDE, VOLUME, Disk, NotSettledError, Staggered, disk_scene
 
+from pages._staggered import RADIUS, SIDE, VOLUME, Disk, NotSettledError, Staggered, disk_scene
 from rigidfluid.api import Simulation
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.output.history import History
@@ -102,8 +102,8 @@ def _in_turn(case: Case, step: float, most: int, limit: float) -> Done:
 
 
 def _row(name: str, way: str, step: float, run: Done, fine: Done) -> Row:
-    """What JSON can hold; errors and energies of those runs alone that came to their end. ``added`` is the mass that the
-    first disk felt in the first step, over that of the fluid it displaces."""
+    """What JSON can hold; errors and energies of those runs alone that came to their end. ``added`` is the mass that
+    the first disk felt in the first step, over that of the fluid it displaces."""
     steps = len(run.times) - 1
     row = {"case": name, "way": way, "step": step, "ended": run.ended, "until": float(run.times[-1])}
     row |= {"fastest": run.fastest / fine.fastest, "solves": run.solves / steps, "ms": 1e3 * run.seconds / steps}

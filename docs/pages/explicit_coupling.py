@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from page_tools import Page, Work, table
 from page_tools.kept_rows import Row
 from page_tools.settings import Settings
+
 from pages._coupling_runs import EXPLICIT, FACTOR, FINE, ITERATED, MOST, ONE, WAYS, Case, rows_of
 from pages._staggered import FIRST_RELAXATION, RADIUS, TOLERANCE, Disk, disk_scene
 
@@ -53,6 +54,8 @@ def page(work: Work) -> Page:
         six=f"{_one(rows, MANY, ITERATED)['solves']:.1f}",
         six_cost=f"{_one(rows, MANY, ITERATED)['ms'] / _one(rows, MANY, ONE)['ms']:.0f}",
         lid_cost=f"{_one(rows, LID, ITERATED)['ms'] / _one(rows, LID, ONE)['ms']:.1f}",
+        coarse=_balances(rows, STEPS[1]),
+        finer=_balances(rows, STEPS[2]),
         ended=sum(row["ended"] for row in rows if row["way"] == ITERATED),
         iterated=sum(row["way"] == ITERATED for row in rows),
         tolerance=f"{TOLERANCE:g}",
@@ -126,6 +129,11 @@ def _one(rows: Sequence[Row], case: str, way: str, step: float = STEP) -> Row:
     return next(row for row in rows if (row["case"], row["way"], row["step"]) == (case, way, step))
 
 
+def _balances(rows: Sequence[Row], step: float) -> str:
+    """Energy that each way created of the heavy disk that bounces; below zero it was lost."""
+    return ", ".join(f"{100.0 * _one(rows, FLOOR, way, step)['created']:+.2g} % ({way})" for way in WAYS)
+
+
 def _told(values: Sequence[float]) -> str:
     return ", ".join(f"{value:.3g}" for value in values) or "none"
 
@@ -177,6 +185,8 @@ def draw_ends(axes: Axes, rows: Sequence[Row]) -> None:
     axes.plot(kept, [end] * len(kept), "o", color=COLOURS[EXPLICIT], mfc="none", label="explicit, to its end")
     axes.plot(DENSITIES, [1.15 * end] * len(DENSITIES), "o", color=COLOURS[ONE], label="one system, to its end")
     axes.set(xscale="log", yscale="log", xlabel="density over the fluid's", ylabel="ten times too fast at [ms]")
+    axes.set_yticks((2, 5, 10, 20, 50), ("2", "5", "10", "20", "50"))
+    axes.minorticks_off()
     axes.set_title("how long runs hold")
     axes.legend(fontsize=8)
 
@@ -193,7 +203,7 @@ def draw_solves(axes: Axes, rows: Sequence[Row]) -> None:
     axes.axhline(1.0, color=COLOURS[ONE], label="one system")
     axes.set(xscale="log", ylim=(0.0, None), xlabel="density over the fluid's", ylabel="flow solves a step")
     axes.set_title("what stability costs")
-    axes.legend(fontsize=8)
+    axes.legend(fontsize=8, loc="center left")
 
 
 def draw_paths(axes: Axes, rows: Sequence[Row]) -> None:
@@ -208,7 +218,9 @@ def draw_paths(axes: Axes, rows: Sequence[Row]) -> None:
         fine = _one(rows, case, FINE, 0.25e-3)
         axes.plot(fine["times"], fine["heights"], "k:", linewidth=1, label="fine" if case == FLOOR else None)
         made = _one(rows, case, ONE)["made"]
-        axes.plot(made, np.interp(made, fine["times"], fine["heights"]), "k|", label="new mesh" * (case == FLOOR) or None)
+        axes.plot(
+            made, np.interp(made, fine["times"], fine["heights"]), "k|", label="new mesh" * (case == FLOOR) or None
+        )
     axes.axhspan(0.0, RADIUS, color="0.9")
     axes.axhspan(0.8 - RADIUS, 0.8, color="0.9")
     axes.set(ylim=(0.0, 0.8), xlabel="time [s]", ylabel="height of the centre [cm]")
@@ -221,57 +233,61 @@ ABOUT = """A disk is let go in a closed box full of fluid. Three ways to couple 
 
 * **one system**: rigidfluid as it is. Fluid and bodies are solved together, once in a step.
 * **explicit**: the disk moves by the flow's force of the step before, and the flow is told its velocity.
-* **iterated**: the same, but a step is taken again until force and velocity agree to {tolerance} of the greatest speed, with
-  Aitken's relaxation, which begins at {relaxation} at most. {allowed} flow solves are allowed.
+* **iterated**: the same, but a step is taken again until force and velocity agree to {tolerance} of the greatest
+  speed, with Aitken's relaxation (Küttler and Wall, Comput. Mech. 43 (2008) 61), which begins at {relaxation} at most.
+  {allowed} flow solves are allowed.
 
-The last two are made with the [public interface](../control.md), and BDF2 moves their disks too. Radius .1 cm, box .8 cm,
-viscosity .05 g/(cm s), gravity 200 cm/s², 1,100 unknowns. All is held against one system with steps of .25 ms. A run ends where
-a speed is {factor} times the greatest of that.
+The last two are made with the [public interface](../control.md), and BDF2 moves their disks too. Radius .1 cm, box .8
+cm, viscosity .05 g/(cm s), gravity 200 cm/s², edges of .04 cm on a disk and .1 cm elsewhere. All is held against one
+system with steps of .25 ms. A run ends where a speed is {factor} times the greatest of that.
 
 ## Light bodies
 
-Below the name of a way and a step is what it does in 50 ms: for `explicit` the greatest speed over the right one, or when it
-ends; for `iterated` the flow solves in a step. One system has at most {most} of the right speed.
+Below the name of a way and a step is what it does in 50 ms: for `explicit` the greatest speed over the right one, or
+when it ends; for `iterated` the flow solves in a step. One system has at most {most} times the right speed.
 
 {limit}
 
-Explicit coupling holds at density ratios of {stable} with all three steps, and does not at {unstable}. The limit follows from
-the added mass: the force of a flow that is told an acceleration is -m_a times that, so each step multiplies the error of the
-acceleration by -m_a/m. In the first step the disk feels an added mass of {added} times the fluid that it displaces (steps of 2,
-1 and .5 ms), so the disk should have at least about that density. **Shorter steps do not help.** The factor of a step stays,
-and there are more steps: at a ratio of {shown} runs end at {sooner} ms. This is what Causin, Gerbeau and
-Nobile (Comput. Methods Appl. Mech. Engrg. 194 (2005) 4506) derive, and Förster, Wall and Ramm (ibid. 196 (2007) 1278) show for flexible
-structures.
+Explicit coupling holds at density ratios of {stable} with all three steps, and does not at {unstable}. The limit
+follows from the added mass: the force of a flow that is told an acceleration is -m_a times that, so each step
+multiplies the error of the acceleration by -m_a/m. In the first step the disk feels an added mass of {added} times the
+fluid that it displaces (steps of 2, 1 and .5 ms), so the disk should have at least about that density. **Shorter steps
+do not help.** The factor of a step stays, and there are more steps: at a ratio of {shown} runs end at {sooner} ms.
+This is what Causin, Gerbeau and Nobile (Comput. Methods Appl. Mech. Engrg. 194 (2005) 4506) derive, and Förster, Wall
+and Ramm (ibid. 196 (2007) 1278) show for flexible structures.
 
-Iterated coupling is stable: {ended} of {iterated} of its runs on this page come to their end. For one disk it takes {solves} flow
-solves in a step. A single disk that goes straight up or down is the best case for Aitken's relaxation, which is a secant
-method then.
+Of the runs with iterated coupling on this page, {ended} of {iterated} come to their end. For one disk it takes
+{solves} flow solves in a step. A single disk that goes straight up or down is the best case for Aitken's relaxation,
+which is a secant method then.
 
 ## What it costs where all hold
 
-Steps of 1 ms. Velocity off: root of the mean square over the time, over the greatest speed. Energy created: what disks, fluid
-and contacts have and the fluid has lost, less the work of gravity, over that.
+Steps of 1 ms. Velocity off: root of the mean square over the time, over the greatest speed. Energy created: what
+disks, fluid and contacts have and the fluid has lost, less the work of gravity, over that.
 
 {errors}
 
-**Heavy bodies do not need one system.** At the highest density explicit coupling is stable: {heavy}. Its error is of first
-order, since the force is a step old. In rigidfluid it is no cheaper, because the disks add three unknowns to the flow's; it is the
-simpler choice where the flow solver is a program that cannot be changed. One system is off by {one} % over all densities.
+**Heavy bodies do not need one system.** At a density ratio of 10, explicit coupling: {heavy}. Its error is of first
+order, since the force is a step old. In rigidfluid one system has three unknowns more for each disk, which a step
+hardly feels; explicit coupling is the simpler choice where the flow solver is a program that cannot be changed. One
+system is off by {one} % over all densities.
 
 ## Contacts, new meshes, many disks
 
-A heavy disk falls onto the floor, bounces and comes to rest; a light one rises to the lid. Both have new meshes on their way. Then six
-disks of densities .1, 3, .1, .5, .1 and 1.2 are let go beside each other, without contacts. Gaps and heights are in radii; height off is the
-root of the mean square over time and disks. Contacts of the last two ways take and give no energy in themselves. The first row of each case is
-what the others are held against.
+A heavy disk falls onto the floor, bounces and comes to rest; a light one rises to the lid. Both have new meshes on
+their way. Then six disks of densities .1, 3, .1, .5, .1 and 1.2 are let go beside each other, without contacts. Gaps
+and heights are in radii; height off is the root of the mean square over time and disks. Contacts of the last two ways
+take and give no energy in themselves. The first row of each case is what the others are held against.
 
 {cases}
 
-* In an impact the disk's velocity jumps. One system takes the impulse as such, with the fluid's share in it, and shortens that step.
-  The other ways tell the flow a velocity that jumps, which BDF2 differences; so they lose energy there even where they agree.
+* In an impact the disk's velocity changes within some steps. One system follows the contact by substeps with the
+  fluid's share in it, and [shortens steps](../numerics.md#contacts) that would lose much. The other ways tell the flow
+  a velocity at the end of each step. Of what gravity works, the heavy disk's run creates {coarse} with steps of 1 ms,
+  and {finer} with .5 ms.
 * For the light disk at the lid iterated coupling takes {lid_cost} times the CPU time of one system with the same step.
-* Of six disks each feels the others. One relaxation for all fits none: {six} flow solves in a step, and {six_cost} times the CPU
-  time of one system. (A quasi-Newton method would need fewer. It is not tried here.)
+* Of six disks each feels the others. One relaxation for all fits none: {six} flow solves in a step, and {six_cost}
+  times the CPU time of one system. (A quasi-Newton method may need fewer; it is not tried here.)
 
-Part of that CPU time is that of this library: a step that is taken again sets up the matrix of the mesh motion anew, so
-flow solves are the fairer measure."""
+Part of that CPU time is that of this library: a step that is taken again sets up the matrix of the mesh motion anew,
+so flow solves are the fairer measure."""
