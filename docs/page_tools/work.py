@@ -104,7 +104,7 @@ class Work:
         return results
 
     def rows(self, measure: Callable[[], Iterable[Row]]) -> list[Row]:
-        """What the page measures, or docs/validation/measured/NAME.json has of it, where it is kept to the last bit."""
+        """What the page measures; where docs/validation/measured/NAME.json has it, it is taken from there."""
         start = cpu_seconds()
         kept = KeptRows.read(self._rows) if self._rows.exists() and not self._fresh else None
         if kept is None or (self._present and not kept.made.is_present):
