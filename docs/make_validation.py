@@ -1,6 +1,7 @@
 """Makes the pages of docs/validation from runs that are kept in out/validation, and says which are out of date.
 
-python docs/make_validation.py [NAME ...] [--fresh]     makes these pages, or all; --fresh runs anew what is kept
+python docs/make_validation.py [NAME ...] [--fresh]     makes these pages, or all; --fresh runs anew what is kept, also
+                                                        rows in docs/validation/measured
 python docs/make_validation.py --present [NAME ...]     the same, but for pages that the present sources have made; runs
                                                         of other sources are made anew; what was stopped goes on
 python docs/make_validation.py --check [NAME ...]       makes quick pages anew in out/pages, and names those that

@@ -8,7 +8,7 @@ from importlib import import_module
 from pathlib import Path
 
 from page_tools.page import write
-from page_tools.places import PAGES, RUNS
+from page_tools.places import MEASURED, PAGES, RUNS
 from page_tools.work import Work
 
 
@@ -21,7 +21,8 @@ def main(*words: str) -> None:
     parser.add_argument("--to", type=Path)
     given = parser.parse_args(words or None)
     runs, folder = (given.to / "runs", given.to) if given.to else (RUNS, PAGES)
-    work = Work(given.name, fresh=given.fresh, present=given.present, runs=runs)
+    measured = folder / MEASURED.name
+    work = Work(given.name, fresh=given.fresh, present=given.present, runs=runs, measured=measured)
     page = import_module(f"pages.{given.name}").page(work)
     folder.mkdir(parents=True, exist_ok=True)
     write(page, given.name, work, folder)

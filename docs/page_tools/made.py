@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from page_tools.provenance import commit, source_digest
 
@@ -27,8 +29,11 @@ class Made:
         if not (folder / RECORD).exists():
             return cls((UNKNOWN,), (UNKNOWN,))
         told = json.loads((folder / RECORD).read_text(encoding="utf-8"))
-        if "commits" not in told:
-            return cls((UNKNOWN,), (UNKNOWN,))
+        return cls.of(told) if "commits" in told else cls((UNKNOWN,), (UNKNOWN,))
+
+    @classmethod
+    def of(cls, told: Mapping[str, Any]) -> Made:
+        """The same as JSON tells it."""
         return cls(tuple(told["commits"]), tuple(told["sources"]), told["cpu_seconds"])
 
     def write(self, folder: Path) -> None:

@@ -8,7 +8,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SCENES, STUDIES = ROOT / "scenes", ROOT / "studies"
 GENERATORS = ROOT / "docs" / "pages"
 PAGES = ROOT / "docs" / "validation"
-RECORDS = PAGES / "records"
+RECORDS, MEASURED = PAGES / "records", PAGES / "measured"
 RUNS, CHECKS = ROOT / "out" / "validation", ROOT / "out" / "pages"
 """Where runs are kept, and where quick pages are made to be compared."""
 

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import rigidfluid
 from page_tools.cpu_time import cpu_seconds
 from page_tools.first_steps import STEPS, first_steps, steps_of
+from page_tools.kept_rows import KeptRows, Row
 from page_tools.kept_run import Run, keep_run
 from page_tools.kept_tests import Found, kept_tests
 from page_tools.made import Made
-from page_tools.places import ROOT, RUNS, SCENES, STUDIES
+from page_tools.places import MEASURED, ROOT, RUNS, SCENES, STUDIES
 from page_tools.provenance import commit, source_digest
 from page_tools.record import RunRecord
 from page_tools.settings import Settings, override, settings_of
@@ -33,11 +34,17 @@ class Work:
     present : bool
         Whether to run anew what other sources than the present ones have made.
 
-    Its ``folder``, out/validation/NAME, is where they are kept; ``runs`` is what is recorded of each run.
+    measured : Path
+        Where rows are kept that the page measures itself.
+
+    Its ``folder``, out/validation/NAME, is where runs and studies are kept; ``runs`` is what is recorded of each run.
     """
 
-    def __init__(self, name: str, *, fresh: bool = False, present: bool = False, runs: Path = RUNS) -> None:
+    def __init__(
+        self, name: str, *, fresh: bool = False, present: bool = False, runs: Path = RUNS, measured: Path = MEASURED
+    ) -> None:
         self.folder, self._fresh, self._present = runs / name, fresh, present
+        self._rows = measured / f"{name}.json"
         self.runs: dict[str, RunRecord] = {}
         self._made: dict[str, Made] = {}
         self._earlier = -cpu_seconds()
@@ -60,7 +67,7 @@ class Work:
         scene = self.scene(scene, overrides) if isinstance(scene, str) else scene
         folder, start = self.folder / label, cpu_seconds()
         run = keep_run(scene, folder, fresh=self._anew(folder), may_stop=may_stop)
-        made, settings = self._note(label, folder, run.cpu_seconds, start), settings_of(scene)
+        made, settings = self._note(label, Made.read(folder), run.cpu_seconds, start), settings_of(scene)
         self.runs[label] = RunRecord(
             settings.command, settings, made.commits, round(run.cpu_seconds, 1), steps_of(run.history)
         )
@@ -89,11 +96,24 @@ class Work:
                 before.now(cpu_seconds() - start).write(folder)
 
         results, _ = run_study(study, folder, fresh=not kept, progress=observe)
-        self._note(f"study {name}", folder, Made.read(folder).cpu_seconds, start)
+        made = Made.read(folder)
+        self._note(f"study {name}", made, made.cpu_seconds, start)
         if study.scene is not None:
             overrides = [override(key, value) for key, value in (study.tables.set | results.plan[0]).items()]
             self.watch(f"study {name}", Settings(str(study.scene.resolve().relative_to(ROOT)), overrides))
         return results
+
+    def rows(self, measure: Callable[[], Iterable[Row]]) -> list[Row]:
+        """What the page measures; where docs/validation/measured/NAME.json has it, it is taken from there."""
+        start = cpu_seconds()
+        kept = KeptRows.read(self._rows) if self._rows.exists() and not self._fresh else None
+        if kept is None or (self._present and not kept.made.is_present):
+            print(f"{self.folder.name}: measures", flush=True)
+            found = list(measure())
+            KeptRows(Made().now(round(cpu_seconds() - start, 1)), found).write(self._rows)
+            kept = KeptRows.read(self._rows)
+        self._note("rows", kept.made, kept.made.cpu_seconds, start)
+        return kept.rows
 
     def tests(self, path: Path) -> Found:
         """What the validation tests of a file have found."""
@@ -106,9 +126,9 @@ class Work:
     def _anew(self, folder: Path) -> bool:
         return self._fresh or (self._present and folder.exists() and not Made.read(folder).is_present)
 
-    def _note(self, label: str, folder: Path, seconds: float, start: float) -> Made:
-        """Note what has made results that took some ``seconds``, and what of them was before this process [s]."""
-        self._made[label] = made = Made.read(folder)
+    def _note(self, label: str, made: Made, seconds: float, start: float) -> Made:
+        """Note what has ``made`` results that took some ``seconds``, and what of them was before this process [s]."""
+        self._made[label] = made
         self._earlier += max(seconds - (cpu_seconds() - start), 0.0)
         return made
 

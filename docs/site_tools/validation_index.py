@@ -35,6 +35,7 @@ SUBJECTS = {
         "stokes_contacts": "Contacts in Stokes flow: approach and rest compared with what is derived",
         "restitution": "Impacts that lose energy: rebound compared with the formula for Stokes numbers",
         "resistances": "Spheres in narrow gaps: force compared with the exact series",
+        "explicit_coupling": "Light bodies, contacts and new meshes: one system beside explicit coupling",
         "stability": "Extreme contacts and densities: where runs hold, and where they end",
         "contact_stepping": "Substeps and implicit steps: error against run time",
         "lammps": "200 dry spheres compared with LAMMPS",

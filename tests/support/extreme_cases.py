@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import partial
 from multiprocessing import get_context
+from typing import Any
 
 import fluid_contacts as contacts
 import numpy as np
@@ -56,6 +57,14 @@ class Demand:
         """Whether the value is within the limits; what is not a number is not."""
         return self.above < value <= self.at_most
 
+    def share(self, value: float) -> float | None:
+        """Of what is allowed, what was found; of a range, the distance from its middle. None where there is nothing to
+        share: no upper limit, or zero."""
+        if not 0.0 < self.at_most < np.inf or not np.isfinite(value):
+            return None
+        middle = 0.5 * (self.above + self.at_most) if np.isfinite(self.above) else 0.0
+        return float(f"{abs(value - middle) / (self.at_most - middle):.3g}")
+
     def __str__(self) -> str:
         limits = [f"above {self.above:g}"] if np.isfinite(self.above) else []
         limits += [f"at most {self.at_most:g}"] if np.isfinite(self.at_most) else []
@@ -80,13 +89,15 @@ class Case:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """What was demanded of a ``figure``, what was found, and whether that is enough, or no worse than is ``known``."""
+    """What was demanded of a ``figure``, what was found, and whether that is enough, or no worse than is ``known``;
+    ``share`` as `Demand.share`."""
 
     figure: str
     demanded: str
     found: str
     passed: bool
     known: bool = False
+    share: float | None = None
 
 
 def findings(case: Case) -> list[Finding]:
@@ -119,7 +130,7 @@ def findings(case: Case) -> list[Finding]:
 def held_against(case: Case, demand: Demand, value: float) -> Finding:
     """What a case's ``value`` of the figure that a ``demand`` is about says of it."""
     known = any(limit.figure == demand.figure and limit.met_by(value) for limit in case.fails)
-    return Finding(demand.figure, str(demand), f"{value:.2g}", demand.met_by(value), known)
+    return Finding(demand.figure, str(demand), f"{value:.2g}", demand.met_by(value), known, demand.share(value))
 
 
 def surprises(case: Case, found: list[Finding]) -> list[str]:
@@ -137,17 +148,16 @@ def surprises(case: Case, found: list[Finding]) -> list[str]:
     return new + worse + mended
 
 
-def rows(processes: int) -> Iterator[tuple[str, str, str, str]]:
-    """Of each of CASES: its name, what was demanded, what was found, and whether it passed; so many at a time."""
+def rows(processes: int) -> Iterator[dict[str, Any]]:
+    """Of each of CASES: its kind, its name, its findings, and how far off it is known to be; so many at a time."""
     with ProcessPoolExecutor(processes, get_context("spawn")) as pool:
         yield from pool.map(_row, range(len(CASES)))
 
 
-def _row(number: int) -> tuple[str, str, str, str]:
-    found, limits = findings(CASES[number]), "; ".join(map(str, CASES[number].fails))
-    failed = f"**no**, {limits}" if limits else "**no**"
-    passed = "yes" if all(finding.passed for finding in found) else failed
-    return CASES[number].name, "; ".join(f.demanded for f in found), "; ".join(f.found for f in found), passed
+def _row(number: int) -> dict[str, Any]:
+    case = CASES[number]
+    found = [asdict(finding) for finding in findings(case)]
+    return {"kind": KIND[case.name], "case": case.name, "findings": found, "fails": list(map(str, case.fails))}
 
 
 def _demanded_end(case: Case) -> str:
@@ -372,14 +382,6 @@ def _by(stepping: Stepping, *steps: float) -> list[Run]:
     return [(step, stepping) for step in steps]
 
 
-def _wet() -> Iterator[Case]:
-    yield from _wet_impacts()
-    yield from _wet_films()
-    yield from _wet_crowds()
-    yield from _wet_shapes()
-    yield from _wet_rest()
-
-
 def _wet_impacts() -> Iterator[Case]:
     """One or a few impacts."""
     sub, imp = partial(_by, "substeps"), partial(_by, "implicit")
@@ -455,5 +457,16 @@ def _wet_rest() -> Iterator[Case]:
     yield from _in_fluid("without inertia, density .1", scene, slow, slow, _by("substeps", 4))
 
 
-CASES = [*_dry(), *_squeezed(), *_crowds(), *_wet()]
+KINDS: dict[str, Callable[[], Iterator[Case]]] = {
+    "no fluid: a few bodies": _dry,
+    "no fluid: squeezed and driven": _squeezed,
+    "no fluid: crowds": _crowds,
+    "fluid: impacts": _wet_impacts,
+    "fluid: thin films": _wet_films,
+    "fluid: crowds": _wet_crowds,
+    "fluid: shapes": _wet_shapes,
+    "fluid: contacts that last": _wet_rest,
+}
+KIND = {case.name: kind for kind, cases in KINDS.items() for case in cases()}
+CASES = [case for cases in KINDS.values() for case in cases()]
 """Scenes at the edge of what contacts can take, made on the spot."""

@@ -14,6 +14,7 @@ from falling import SCENES
 from matplotlib.figure import Figure
 from page_tools import Page, Work, page, table
 from page_tools.cost_table import CostTable
+from page_tools.kept_rows import KeptRows
 from page_tools.kept_run import keep_run
 from page_tools.made import UNKNOWN, Made
 from page_tools.provenance import commit, file_digest, source_digest, text_digest
@@ -154,6 +155,34 @@ def test_runs_of_other_sources_are_made_anew_where_the_present_are_asked_for(tmp
     assert (tmp_path / "page" / "run" / "summary.json").stat().st_mtime_ns > before
     assert work.outdated == {}
     assert work.sources == (source_digest(),)
+
+
+def test_rows_are_measured_once_and_kept_with_what_has_made_them(tmp_path: Path) -> None:
+    asked: list[int] = []
+
+    def rows_from(**how: bool) -> tuple[Work, object]:
+        work = Work("page", runs=tmp_path, measured=tmp_path / "measured", **how)
+        return work, work.rows(lambda: [{"gap": 0.1 * len(asked), "number": asked.append(0) or len(asked)}])
+
+    assert rows_from()[1] == rows_from()[1] == [{"gap": 0.0, "number": 1}]
+    kept = KeptRows.read(tmp_path / "measured" / "page.json")
+    assert kept.made.is_present
+    assert rows_from(fresh=True)[1] == [{"gap": 0.1, "number": 2}]
+    KeptRows(Made(("before",), ("others",), 1000.0), list(kept.rows)).write(tmp_path / "measured" / "page.json")
+    older, rows = rows_from()
+    assert rows == kept.rows
+    assert (older.outdated, older.sources) == ({"rows": "before"}, ("others", source_digest()))
+    assert older.cpu_seconds >= 1000.0
+    present, rows = rows_from(present=True)
+    assert rows == [{"gap": 0.2, "number": 3}]
+    assert (present.outdated, len(asked)) == ({}, 3)
+
+
+def test_rows_that_no_file_can_hold_replace_none(tmp_path: Path) -> None:
+    KeptRows(Made(), [{"gap": 0.1}]).write(tmp_path / "page.json")
+    with pytest.raises(ValueError, match="JSON"):
+        KeptRows(Made(), [{"gap": np.inf}]).write(tmp_path / "page.json")
+    assert KeptRows.read(tmp_path / "page.json").rows == [{"gap": 0.1}]
 
 
 def test_a_run_is_recorded_by_a_command_that_makes_it(tmp_path: Path) -> None:
