@@ -72,7 +72,7 @@ HEAVY = {
     *("scipy.integrate", "scipy.interpolate", "scipy.ndimage", "scipy.optimize", "scipy.signal", "scipy.stats"),
 }
 """What no run of balls between flat walls needs."""
-OF_A_FLUID = {"mmgpy", "netgen", "pypardiso", "skfem", "scipy.sparse.linalg"}
+OF_A_FLUID = {"mmgpy", "netgen", "pypardiso", "skfem", "scipy.sparse.linalg", "scipy.spatial", "scipy.special"}
 """What a scene without a fluid needs not either."""
 
 

@@ -90,11 +90,11 @@ def run(scene: SceneFile, out: OutFolder = None, assignments: Assignments = None
             from rigidfluid.core.run.run import simulate
             from rigidfluid.core.scene.places import told_in_file
 
-            loaded = load_scene(scene, assignments or ())
+            loaded, compiling = load_scene(scene, assignments or ()), compilation_told()
         folder = out or Path("out") / loaded.name
         ends: list[History] = []
         try:
-            compiling, told = compilation_told(), told_in_file(scene, assignments or ())
+            told = told_in_file(scene, assignments or ())
             with compiling, told, progress_bar(loaded.name, loaded.time) as show:
                 simulate(
                     loaded, folder, resume=resume, progress=show, processes=console.LAUNCH.size, finished=ends.append

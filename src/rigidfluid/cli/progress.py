@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from datetime import timedelta
 from typing import TYPE_CHECKING
 
@@ -19,8 +19,7 @@ SECONDS_OF_A_LINE = 10.0
 """Seconds from one line of progress to the next."""
 
 
-@contextmanager
-def compilation_told() -> Iterator[None]:
+def compilation_told() -> AbstractContextManager[None]:
     """Say once why nothing seems to happen where loops are compiled; later runs load them from the disk."""
     from numba.core.event import Event, Listener, install_listener
 
@@ -35,8 +34,8 @@ def compilation_told() -> Iterator[None]:
         def on_end(self, event: Event) -> None:
             pass
 
-    with install_listener("numba:compile", FirstOne()):
-        yield
+    listening: AbstractContextManager[None] = install_listener("numba:compile", FirstOne())
+    return listening
 
 
 @contextmanager

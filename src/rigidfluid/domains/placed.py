@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.special import elliprg
+import scipy
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.facet_surface import FacetSurface
@@ -85,8 +85,8 @@ class PlacedBody(Surface):
         if self.semi_axes is not None:
             squares = self.semi_axes**2
             if self.shape.dimension == 2:
-                return float(8.0 * elliprg(0.0, *squares))
-            return float(4.0 * np.pi * elliprg(*(squares * np.roll(squares, 1))))
+                return float(8.0 * scipy.special.elliprg(0.0, *squares))
+            return float(4.0 * np.pi * scipy.special.elliprg(*(squares * np.roll(squares, 1))))
         if self.shape.facets is not None:
             areas = area_vectors(self.shape.facets.points, self.shape.facets.vertices)
             return float(np.linalg.norm(areas, axis=1).sum())

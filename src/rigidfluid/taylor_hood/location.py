@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.mesh.location import INSIDE, move_inside
@@ -26,7 +26,7 @@ def locate_on_curves(nodes: FloatArray, guess: IntArray, targets: FloatArray) ->
     if len(astray):
         corners = targets.shape[1] + 1
         count = min(_NEIGHBOURS, len(nodes))
-        _, near = cKDTree(nodes[:, :corners].mean(axis=1)).query(targets[astray], k=count)
+        _, near = scipy.spatial.cKDTree(nodes[:, :corners].mean(axis=1)).query(targets[astray], k=count)
         near = near.reshape(len(astray), count)
         tried = _invert_maps(nodes[near.ravel()], np.repeat(targets[astray], count, axis=0))
         tried = tried.reshape(*near.shape, corners)

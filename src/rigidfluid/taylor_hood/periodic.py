@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.errors import MeshError
@@ -38,7 +38,7 @@ def originals(faces: Sequence[Face], node_points: FloatArray) -> IntArray:
         images, normal = by_surface[face.condition.image].nodes, face.condition.normal
         assert normal is not None
         way = normal * float((node_points[images[0]] - node_points[face.nodes[0]]) @ normal)
-        distance, place = cKDTree(node_points[face.nodes] + way).query(node_points[images])
+        distance, place = scipy.spatial.cKDTree(node_points[face.nodes] + way).query(node_points[images])
         if len(images) != len(face.nodes) or np.max(distance) > _APART * np.ptp(node_points, axis=0).max():
             name = f"surfaces {face.condition.name!r} and {by_surface[face.condition.image].condition.name!r}"
             message = f"{len(face.nodes)} and {len(images)} nodes, up to {np.max(distance):.3g} apart"

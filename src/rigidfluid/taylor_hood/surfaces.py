@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import scipy
 from scipy import sparse
-from scipy.spatial import cKDTree
 
 from rigidfluid.core.fluid.conditions import BoundaryCondition
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
@@ -220,7 +220,7 @@ def pressure_pin_vertex(surfaces: Surfaces, mesh: Mesh) -> int | None:
     ranks, bodies = surfaces.ranks, len(surfaces.body_nodes)
     on_bodies = np.concatenate(ranks.allgather(mesh.points[np.unique(mesh.facets[mesh.markers < bodies])]))
     origin = on_bodies if len(on_bodies) else mesh.points[:1]
-    distance = np.asarray(cKDTree(origin).query(mesh.points)[0])
+    distance = np.asarray(scipy.spatial.cKDTree(origin).query(mesh.points)[0])
     inside = surfaces.velocity_free[: len(mesh.points)].all(axis=1)
     preference = distance + np.where(inside, float(ranks.greatest(distance.max())), 0.0)
     local = int(np.argmax(preference))

@@ -5,9 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import scipy
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.geometry.wall import Wall
+
+_FEW = 32
+"""Number of balls up to which all pairs are looked at; a tree takes longer to load than a run of so few to start."""
 
 
 def near_pairs(position: FloatArray, radii: FloatArray, reach: float) -> tuple[IntArray, IntArray]:
@@ -31,25 +35,31 @@ def near_walls(position: FloatArray, radii: FloatArray, walls: Sequence[Wall], r
 def least_gaps(position: FloatArray, radii: FloatArray, walls: Sequence[Wall]) -> FloatArray:
     """Lower bound of each ball's nearest gap (n,), min(|x - x'| - r - max r, d(x) - r), x' the nearest neighbour, d the
     distance to walls; it may be negative, and is infinite for a ball alone without walls [length]."""
-    from scipy.spatial import cKDTree
-
     least = np.full(len(radii), np.inf)
     if len(radii) > 1:
-        nearest = np.asarray(cKDTree(position).query(position, k=2)[0])
-        least = nearest[:, 1] - radii - radii.max()
+        least = nearest_others(position)[0] - radii - radii.max()
     for wall in walls:
         least = np.minimum(least, wall.shape.signed_distance(position) - radii)
     return least
 
 
+def nearest_others(position: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Distance (n,) of each point to the nearest other one [length], and which that is (n,); ``position`` (n, d) of two
+    or more [length]."""
+    if len(position) > _FEW:
+        distance, other = (np.asarray(each)[:, 1] for each in scipy.spatial.cKDTree(position).query(position, k=2))
+        return distance, other
+    distances = np.linalg.norm(position[:, None] - position, axis=2)
+    np.fill_diagonal(distances, np.inf)
+    return distances.min(axis=1), distances.argmin(axis=1)
+
+
 def _candidates(position: FloatArray, radii: FloatArray, reach: float) -> tuple[IntArray, IntArray]:
-    if len(radii) < 2 or not np.isfinite(reach):
+    if len(radii) <= _FEW or not np.isfinite(reach):
         first, second = np.triu_indices(len(radii), k=1)
         return first.astype(np.int64), second.astype(np.int64)
-    from scipy.spatial import cKDTree
-
     span = max(reach + 2 * float(radii.max()), 0.0)
-    tree = cKDTree(position, compact_nodes=False, balanced_tree=False)
+    tree = scipy.spatial.cKDTree(position, compact_nodes=False, balanced_tree=False)
     pairs = tree.query_pairs(span + _rounding(radii, reach), output_type="ndarray")
     return pairs[:, 0].astype(np.int64), pairs[:, 1].astype(np.int64)
 

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rigidfluid.core.contact.broad_phase import nearest_others
 from rigidfluid.core.contact.proximity import detect
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.guarded import told_of
@@ -95,11 +96,9 @@ def _refuse_contradictory(sides: tuple[_Side, _Side]) -> None:
 
 def _nearest_pairs(system: System, pose: Pose) -> list[tuple[int, int]]:
     """Pairs of surfaces whose bounding balls are nearest to each other, the nearest first."""
-    from scipy.spatial import cKDTree
-
     radii, found = np.array([body.bounding_radius for body in system.bodies]), dict[tuple[int, int], float]()
     if len(radii) > 1:
-        distance, other = (np.asarray(each)[:, 1] for each in cKDTree(pose.position).query(pose.position, k=2))
+        distance, other = nearest_others(pose.position)
         gap = distance - radii - radii[other]
         for a in np.argsort(gap)[: 2 * MOST_PAIRS].tolist():  # a pair comes twice
             found[min(a, int(other[a])), max(a, int(other[a]))] = float(gap[a])

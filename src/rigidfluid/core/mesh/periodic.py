@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.mesher_unit import in_unit
@@ -38,7 +38,7 @@ def with_exact_images(mesh: Mesh, bodies: int, domain: Domain) -> Mesh:
     for pair in domain.periodic:
         points, way = mesh.points.copy(), _way(domain, pair)
         one, two = (surface_vertices(mesh, bodies + piece) for piece in pair)
-        distance, place = cKDTree(points[one] + way).query(points[two])
+        distance, place = scipy.spatial.cKDTree(points[one] + way).query(points[two])
         if len(one) != len(two) or np.max(distance) > _APART * np.linalg.norm(way):
             names = " and ".join(repr(domain.names[piece]) for piece in pair)
             found = f"{len(one)} and {len(two)} vertices on the periodic surfaces {names}"

@@ -50,7 +50,7 @@ from rigidfluid.core.scene.table_type import TableType
 class PartOptions(BaseModel, metaclass=TableType):
     """The keys that an implementation reads from its table of the scene file; this one reads none."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False, defer_build=True)
 
 
 class Part(metaclass=Guarded):

@@ -62,7 +62,7 @@ SizeBody = Annotated[
 class _Table(BaseModel, metaclass=TableType):
     """A table whose keys are all given here."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False, defer_build=True)
 
 
 class _OpenTable(_Table):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rigidfluid.core.contact.broad_phase import near_pairs
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 
 
@@ -35,10 +36,8 @@ def stack_loads(
 
 def _overlapping(direction: FloatArray, position: FloatArray, radius: FloatArray) -> IntArray:
     """The p pairs of bodies that overlap, seen along ``direction`` (d,), (p, 2)."""
-    from scipy.spatial import cKDTree
-
     shadow = position - np.outer(position @ direction, direction)
-    pairs = cKDTree(shadow).query_pairs(2.0 * float(radius.max()), output_type="ndarray")
+    pairs = np.column_stack(near_pairs(shadow, radius, 0.0))
     distance = np.linalg.norm(shadow[pairs[:, 0]] - shadow[pairs[:, 1]], axis=1)
     return np.asarray(pairs[distance < radius[pairs].sum(axis=1)])
 
