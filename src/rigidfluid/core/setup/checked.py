@@ -18,7 +18,7 @@ from rigidfluid.errors import ArgumentError
 
 T = TypeVar("T")
 
-_CONFIG = ConfigDict(strict=True, arbitrary_types_allowed=True, allow_inf_nan=False, defer_build=True)
+_CONFIG = ConfigDict(strict=True, arbitrary_types_allowed=True, allow_inf_nan=False)
 
 
 def _plain(value: Any) -> Any:
