@@ -123,6 +123,6 @@ clean:
 .venv-lowest/.installed: pyproject.toml $(PLUGINS:%=%/pyproject.toml) | .venv-lowest/.created
 	.venv-lowest/bin/python -m pip install --quiet uv
 	.venv-lowest/bin/uv pip install --quiet --python .venv-lowest --resolution lowest-direct \
-		--editable '.[test,movies]' $(PLUGINS:%=--editable %)
+		--editable '.[test,movies,notebooks]' $(PLUGINS:%=--editable %)
 	.venv-lowest/bin/python tools/lowest.py
 	touch $@
