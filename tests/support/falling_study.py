@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from typer.testing import CliRunner, Result
+
+from rigidfluid.cli import app
+
 SCENE = """\
 [scene]
 name = "fall"
@@ -46,3 +50,17 @@ def falling_study(folder: Path, tables: str, figure: str = HEIGHT, error: str = 
     path = folder / "fall_study.toml"
     path.write_text(f'[study]\nname = "fall"\nscene = "fall.toml"\n{tables}\n[error]\nfigure = {figure}\n{error}\n')
     return path
+
+
+def command(path: Path) -> Result:
+    """Run a study by the command, into the folder ``out`` beside it."""
+    return CliRunner().invoke(app, ["study", str(path), "--out", str(path.parent / "out")], env={"COLUMNS": "200"})
+
+
+def check_refusal(result: Result, *texts: str) -> None:
+    """A command has said in one line, with these texts, what is wrong."""
+    assert result.exit_code == 2
+    assert result.stderr.startswith("Error: ")
+    assert result.stderr.count("\n") == 1
+    for text in texts:
+        assert text in result.stderr

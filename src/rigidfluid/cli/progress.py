@@ -99,7 +99,12 @@ def _mesh_failures(failed: int) -> str:
 
 @contextmanager
 def runs_bar(name: str) -> Iterator[Callable[[RunsProgress], None]]:
-    """Yield a function that shows in a bar how many runs are done, out of how many, and a word on the present one."""
+    """Yield a function that shows in a bar how many runs are done, out of how many, and a word on the present one; on a
+    terminal alone."""
+    terminal = make_console(stderr=True)
+    if not terminal.is_terminal:
+        yield lambda _: None
+        return
     from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar
 
@@ -110,8 +115,7 @@ def runs_bar(name: str) -> Iterator[Callable[[RunsProgress], None]]:
         TimeRemainingColumn(),
         TextColumn("to go"),
     )
-    terminal = make_console(stderr=True)
-    with Bar(*columns, console=terminal, disable=not terminal.is_terminal) as bar:
+    with Bar(*columns, console=terminal) as bar:
         task = bar.add_task(name, total=None, now="")
 
         def show(now: RunsProgress) -> None:
@@ -123,10 +127,14 @@ def runs_bar(name: str) -> Iterator[Callable[[RunsProgress], None]]:
 
 @contextmanager
 def movie_bar() -> Iterator[Callable[[int, int], None]]:
-    """Yield a function that shows in a bar how many pictures of a movie are done, out of how many."""
+    """Yield a function that shows in a bar how many pictures of a movie are done, out of how many; on a terminal
+    alone."""
+    terminal = make_console(stderr=True)
+    if not terminal.is_terminal:
+        yield lambda done, total: None
+        return
     from rich.progress import Progress as Bar
 
-    terminal = make_console(stderr=True)
-    with Bar(console=terminal, disable=not terminal.is_terminal) as bar:
+    with Bar(console=terminal) as bar:
         task = bar.add_task("movie", total=None)
         yield lambda done, total: bar.update(task, total=total, completed=done)

@@ -49,12 +49,10 @@ def print_insertion(figures: InsertionFigures) -> None:
 def print_study(results: Results) -> None:
     """Print how many runs of a study there are, and of random samples the figure's quantiles and Sobol indices, or the
     settings that no other ones beat in error and time."""
-    from rigidfluid.post.studies.sampled import sampled
-
     failed = len(results.plan) - len(results.outcomes)
     reference = "" if results.reference is None else f"; reference {_figure(results.reference)}"
     tell(f"{len(results.plan)} runs, {failed} failed{reference}")
-    for one in (one for one in sampled(results) if len(one.known)):
+    for one in (one for one in results.samples if len(one.known)):
         low, median, high = map(_figure, one.quantiles)
         about = f"{_knobs(one.variant)}: " if one.variant else ""
         tell(f"{about}{results.target.of}: median {median}, 5 to 95 % from {low} to {high}")

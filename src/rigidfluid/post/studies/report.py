@@ -18,7 +18,7 @@ from rigidfluid.post.studies.parameter_plot import parameter_plot
 from rigidfluid.post.studies.plot import error_label, error_plot
 from rigidfluid.post.studies.results import Results
 from rigidfluid.post.studies.rows import cells
-from rigidfluid.post.studies.sampled import Grid, Sampled, index_table, quantile_table, sampled
+from rigidfluid.post.studies.sampled import Grid, Sampled, index_table, quantile_table
 from rigidfluid.post.studies.samples_plot import samples_plot
 from rigidfluid.post.studies.table import write_grid
 
@@ -33,7 +33,7 @@ def write_report(results: Results, out: Path) -> list[Path]:
 
     Returns the files written; raises OutputError if the disk refuses.
     """
-    samples = sampled(results)
+    samples = results.samples
     grids = _sample_grids(results, samples)
     tables = [write_grid(out / f"{name}.csv", grid) for name, grid in grids.items()]
     with matplotlib.rc_context(STYLE), writing(out / PAGE):

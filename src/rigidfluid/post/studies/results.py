@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,6 +11,7 @@ from typing import TypeVar
 
 from rigidfluid.post.studies.model import FINEST, Study
 from rigidfluid.post.studies.rows import Row
+from rigidfluid.post.studies.sampled import Sampled, sampled
 from rigidfluid.post.studies.strict_table import Settings
 from rigidfluid.post.studies.subject import Outcome, Target
 
@@ -37,6 +39,13 @@ class Results:
         """Outcomes of the runs that did not fail, by fingerprint."""
         done = {key: self.rows[key].outcome for key in self.prints if key in self.rows}
         return {key: outcome for key, outcome in done.items() if outcome is not None}
+
+    @cached_property
+    def samples(self) -> list[Sampled]:
+        """Random samples with each numerical setting; none in a study without random parameters."""
+        figures = {key: outcome.figure for key, outcome in self.outcomes.items()}
+        runs = zip(self.plan, self.prints, strict=True)
+        return sampled(self.study, [(settings, figures.get(key, math.nan)) for settings, key in runs])
 
     @cached_property
     def groups(self) -> list[list[str]]:

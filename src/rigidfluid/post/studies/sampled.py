@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.post.studies.results import Results
+from rigidfluid.post.studies.model import Study
 from rigidfluid.post.studies.rows import cells
 from rigidfluid.post.studies.sobol import SobolIndex, sobol_indices
 from rigidfluid.post.studies.strict_table import Settings
@@ -41,16 +41,16 @@ class Sampled:
         return [float(value) for value in np.quantile(found, QUANTILES)] if len(found) else [np.nan] * len(QUANTILES)
 
 
-def sampled(results: Results) -> list[Sampled]:
-    """Samples with each numerical setting; none in a study without random parameters."""
-    study, random = results.study, results.study.tables.random
+def sampled(study: Study, runs: Iterable[tuple[Settings, float]]) -> list[Sampled]:
+    """Samples with each numerical setting; none in a study without random parameters. ``runs``: settings and figure of
+    each that is planned, nan where it has none."""
+    random = study.tables.random
     if random is None:
         return []
-    keys = {_text(settings): key for settings, key in zip(results.plan, results.prints, strict=True)}
-    figures = {key: outcome.figure for key, outcome in results.outcomes.items()}
+    figures = {_text(settings): figure for settings, figure in runs}
     found = []
     for variant in study.variants:
-        values = np.array([figures.get(keys[_text(group | variant)], np.nan) for group in study.groups])
+        values = np.array([figures[_text(group | variant)] for group in study.groups])
         indices = sobol_indices(values, len(study.parameters), random.seed) if random.indices else []
         found.append(Sampled(variant, values, dict(zip(study.parameters, indices, strict=False))))
     return found

@@ -11,6 +11,7 @@ from typing import Any, get_args
 import numpy as np
 import pytest
 from falling import SCENES
+from falling_study import check_refusal
 from typer.testing import CliRunner, Result
 
 import rigidfluid
@@ -124,12 +125,7 @@ def results_of(path: Path, out: Path) -> Results:
 
 
 def refused(path: Path, *texts: str) -> None:
-    result = study_command(path, "--out", path.parent / "out")
-    assert result.exit_code == 2
-    assert result.stderr.startswith("Error: ")
-    assert result.stderr.count("\n") == 1
-    for text in texts:
-        assert text in result.stderr
+    check_refusal(study_command(path, "--out", path.parent / "out"), *texts)
     assert not (path.parent / "out" / "study.html").exists()
 
 
