@@ -49,8 +49,11 @@ class NotebookProgress:
         self._show = shell.display.display
         self._plot, self._every, self._due = plot, every, 0.0
         self._handle: Any = None
+        self._history: History | None = None
 
     def __call__(self, now: Progress) -> None:
+        if now.history is not self._history:  # another run has a place of its own
+            self._history, self._handle, self._due = now.history, None, 0.0
         if now.elapsed < self._due and now.time + 0.5 * now.step < now.end:
             return
         start = time.perf_counter()

@@ -15,7 +15,7 @@ from rigidfluid.core.case.scene_model import Case
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.output.checkpoint import read_scene
 from rigidfluid.core.output.fluid_fields import FluidFields
-from rigidfluid.core.output.history import History
+from rigidfluid.core.output.history import History, reading
 from rigidfluid.core.output.records import columns
 from rigidfluid.core.output.summary_file import read_summary
 from rigidfluid.core.output.tables import read_columns, read_header, table_path
@@ -40,7 +40,7 @@ class RunResults(History):
     def __init__(self, folder: Path) -> None:
         has_ended = (folder / SUMMARY).exists()
         if not has_ended and not (folder / CHECKPOINT).exists():
-            found = f"neither {SUMMARY} nor {CHECKPOINT}" if folder.is_dir() else "no such folder"
+            found = f"neither {SUMMARY} nor {CHECKPOINT}" if folder.is_dir() else "no folder"
             raise OutputError(str(folder), found, "the folder of a run", "Give the one that the run wrote, its --out.")
         summary = read_summary(folder / SUMMARY) if has_ended else {}
         self._document: Mapping[str, Any] = summary["scene"] if has_ended else read_scene(folder / CHECKPOINT)
@@ -62,13 +62,13 @@ class RunResults(History):
         """Times (F,) of the fields on disk, none without a fluid [time]."""
         return np.array([time for time, _ in self._series()])
 
-    def fields(self, time: float = math.inf) -> FluidFields:
+    def fields(self, time: float | None = None) -> FluidFields:
         """Read the fields of the output that is nearest to a time.
 
         Parameters
         ----------
         time : float
-            Time of the state; the latest output if not given [time].
+            Time of the state, none before the first output or after the latest; the latest if not given [time].
 
         Returns
         -------
@@ -78,13 +78,18 @@ class RunResults(History):
         Raises
         ------
         OutputError
-            If there are none, or a file cannot be read.
+            If there are none or none so early or late, or a file cannot be read.
         """
         series = self._series()
-        if not series or math.isnan(time):
-            found = "no fields, as of a run without a fluid" if not series else "nan"
-            raise OutputError(f"{self.folder}, fields", found, "a time of an output with fields", "See `times`.")
-        nearest, path = min(series, key=lambda one: abs(one[0] - min(time, series[-1][0])))
+        if not series:
+            allowed, remedy = "those of a run with a fluid", "See its tables."
+            raise OutputError(f"{self.folder}, fields", "none", allowed, remedy)
+        first, latest = series[0][0], series[-1][0]
+        wanted = latest if time is None else time
+        if not (first <= wanted <= latest or math.isclose(wanted, latest)):
+            allowed, remedy = f"{first:.6g} to {latest:.6g}", "Choose one of `times`."
+            raise OutputError(f"{self.folder}, time of fields", wanted, allowed, remedy)
+        nearest, path = min(series, key=lambda one: abs(one[0] - wanted))
         return FluidFields.from_fields(read_vtu(path), nearest)
 
     def table(self, name: str, only: Iterable[str] | None = None) -> dict[str, NDArray[Any]]:
@@ -133,4 +138,7 @@ def _coordinates(folder: Path, dimension: int) -> list[str]:
     """Columns of the coordinates of joints, also of those that a plug-in names."""
     path = table_path(folder, "joints")
     known = columns(dimension, ())["joints"]
-    return [name for name in read_header(path) if name not in known] if path.exists() else []
+    if not path.exists():
+        return []
+    with reading(path):
+        return [name for name in read_header(path) if name not in known]

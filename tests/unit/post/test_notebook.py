@@ -72,6 +72,13 @@ def test_a_run_is_shown_to_its_end(shown: Shown) -> None:
     assert [data["text/plain"].partition(",")[0] for data in shown.pages] == ["time 0.01 of 0.1", "time 0.1 of 0.1"]
 
 
+def test_another_run_has_a_place_of_its_own(shown: Shown, history: History) -> None:
+    show = NotebookProgress(every=10.0)
+    show(progress(history, 0.5, 20.0))
+    show(progress(History(2), 0.01, 1.0))
+    assert shown.places == 2
+
+
 def test_failed_meshes_are_told(history: History) -> None:
     now = Progress(0.5, end=1.0, step=0.01, gap=0.3, elapsed=1.0, failed_remeshes=2, history=history)
     assert "2 failed re-meshes" in page(now, None)

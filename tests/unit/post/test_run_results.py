@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import math
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -12,7 +14,7 @@ import pytest
 from scenes import Table, dry_tables, wet_tables
 
 import rigidfluid
-from rigidfluid.api import OutputError, Simulation, load_results, model_of, scene_from_dict
+from rigidfluid.api import ArgumentError, OutputError, Simulation, load_results, model_of, scene_from_dict
 
 DISK = {
     "name": "disk",
@@ -62,7 +64,7 @@ def test_fields_of_an_output_are_those_of_the_simulation_then(dimension: int, tm
     results = load_results(tmp_path)
     np.testing.assert_allclose(results.times, [0.0, 0.01, 0.02])
     for time, fields in kept.items():
-        read = results.fields(time + 0.003)
+        read = results.fields(min(time + 0.003, 0.02))
         assert read.time == fields.time == time
         np.testing.assert_array_equal(read.cells, fields.cells)
         np.testing.assert_array_equal(read.points, fields.points)
@@ -124,14 +126,54 @@ def test_without_a_fluid_there_are_no_fields(tmp_path: Path) -> None:
     rigidfluid.run(dry_scene(), tmp_path)
     results = load_results(tmp_path)
     assert results.times.shape == (0,)
-    with pytest.raises(OutputError, match="no fields, as of a run without a fluid"):
+    with pytest.raises(OutputError, match="fields: found none; allowed is those of a run with a fluid"):
         results.fields()
 
 
-def test_no_time_is_no_output(tmp_path: Path) -> None:
-    Simulation(wet_scene(), tmp_path).close()
-    with pytest.raises(OutputError, match="found nan; allowed is a time"):
-        load_results(tmp_path).fields(float("nan"))
+def test_a_time_outside_the_outputs_is_refused(tmp_path: Path) -> None:
+    simulation = Simulation(wet_scene(), tmp_path)
+    simulation.go(until=0.02)
+    simulation.close()
+    results = load_results(tmp_path)
+    assert results.fields(0.02 * (1 + 1e-12)).time == pytest.approx(0.02)
+    for time in (-0.001, 0.021, math.inf, math.nan):
+        with pytest.raises(OutputError, match=f"time of fields: found {time}; allowed is 0 to 0.02"):
+            results.fields(time)
+
+
+def test_a_name_that_no_table_or_column_has_is_refused(tmp_path: Path) -> None:
+    history = rigidfluid.run(dry_scene())
+    rigidfluid.run(dry_scene(), tmp_path)
+    for results in (history, load_results(tmp_path)):
+        with pytest.raises(ArgumentError, match="table: found 'body'; allowed is one of bodies, contacts, joints"):
+            results.table("body")
+        with pytest.raises(ArgumentError, match="bodies, column: found 'vz'; allowed is one of time, step, body, x"):
+            results.table("bodies", ("vy", "vz"))
+
+
+@pytest.mark.parametrize(
+    "edited",
+    [
+        {"scene": 1},
+        {"scene": {}},
+        {"scene": {"scene": {"name": "dry", "dimension": "2"}}},
+        {"scene": {"scene": {"name": "dry", "dimension": 4}}},
+        {"energy": 1},
+    ],
+)
+def test_an_edited_summary_is_refused(edited: Table, tmp_path: Path) -> None:
+    rigidfluid.run(dry_scene(), tmp_path)
+    path = tmp_path / "summary.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | edited))
+    with pytest.raises(OutputError, match=r"summary\.json: found no tables `scene` and `energy` of a run"):
+        load_results(tmp_path)
+
+
+def test_a_table_of_joints_that_is_no_text_is_refused(tmp_path: Path) -> None:
+    rigidfluid.run(dry_scene(), tmp_path)
+    (tmp_path / "joints.csv").write_bytes(b"\xff\xfe")
+    with pytest.raises(OutputError, match=r"joints\.csv: found 'utf-8' codec"):
+        load_results(tmp_path)
 
 
 def test_results_of_a_model_made_in_python_have_tables_and_no_scene(tmp_path: Path) -> None:
@@ -143,7 +185,7 @@ def test_results_of_a_model_made_in_python_have_tables_and_no_scene(tmp_path: Pa
     assert "scene: mine" in repr(results)
 
 
-@pytest.mark.parametrize(("name", "found"), [("", "neither summary.json nor state.h5"), ("missing", "no such folder")])
+@pytest.mark.parametrize(("name", "found"), [("", "neither summary.json nor state.h5"), ("missing", "no folder")])
 def test_a_folder_of_no_run_is_refused(name: str, found: str, tmp_path: Path) -> None:
     with pytest.raises(OutputError, match=f"found {found}; allowed is the folder of a run"):
         load_results(tmp_path / name)

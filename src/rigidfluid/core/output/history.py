@@ -15,7 +15,7 @@ from rigidfluid.core.output.optional_package import optional_package
 from rigidfluid.core.output.records import Records, Row, columns
 from rigidfluid.core.output.tables import read_columns, read_header, read_rows, table_path
 from rigidfluid.described import Described
-from rigidfluid.errors import OutputError
+from rigidfluid.errors import ArgumentError, OutputError
 
 
 class History(Described):
@@ -100,14 +100,18 @@ class History(Described):
 
         Raises
         ------
+        ArgumentError
+            If no table or column has such a name.
         OutputError
             If the table is on disk and cannot be read.
         """
+        _require("table", [name], self.columns)
         names = self.columns[name]
         wanted = tuple(names if only is None else only)
+        _require(f"{name}, column", wanted, names)
         if self.folder is not None:
             path = table_path(self.folder, name)
-            with _reading(path):
+            with reading(path):
                 known = wanted if only is not None else [name for name in read_header(path) if name in wanted]
                 return self._read(path, known or wanted)
         rows = self._rows.get(name, [])
@@ -128,6 +132,8 @@ class History(Described):
 
         Raises
         ------
+        ArgumentError
+            If no table has this name.
         OutputError
             If pandas is not installed, or the table cannot be read.
         """
@@ -181,15 +187,22 @@ class History(Described):
 
 
 def _rows(path: Path) -> list[Row]:
-    with _reading(path):
+    with reading(path):
         return read_rows(path)
 
 
 @contextmanager
-def _reading(path: Path) -> Iterator[None]:
+def reading(path: Path) -> Iterator[None]:
     """Turn what is wrong with a table into an OutputError that names the file."""
     try:
         yield
     except (OSError, ValueError) as error:
         remedy = "Restore the file, or run the scene again."
         raise OutputError(str(path), error, "a table as a run has written it", remedy) from error
+
+
+def _require(field: str, names: Iterable[str], known: Iterable[str]) -> None:
+    """Raise ArgumentError where one of the names is not known."""
+    for name in names:
+        if name not in known:
+            raise ArgumentError(field, repr(name), f"one of {', '.join(known)}", "Correct the name.")

@@ -23,7 +23,10 @@ def read_summary(path: Path, needed: Iterable[str] = ("scene", "status")) -> dic
     missing = [key for key in needed if key not in summary] if isinstance(summary, dict) else ["table"]
     if missing:
         raise unreadable(path, f"no {missing[0]} in it")
-    return dict(summary)
+    match summary:
+        case {"scene": {"scene": {"name": str(), "dimension": int(2 | 3)}}, "energy": dict()}:
+            return dict(summary)
+    raise unreadable(path, "no tables `scene` and `energy` of a run in it")
 
 
 def unreadable(path: Path, found: object) -> OutputError:
