@@ -73,6 +73,13 @@ class Section:
             return cell_by_cell(self.fields), values.ravel()
         return fine_triangles(self.fields), values
 
+    def spread(self, quantity: Quantity) -> tuple[FloatArray, FloatArray]:
+        """A quantity at the corners of all triangles (K,), and the area that each stands for (K,)."""
+        triangulation, at_nodes = self.triangles(self.values(quantity))
+        corners = triangulation.triangles
+        first, second = (np.diff(axis[corners], axis=1).T for axis in (triangulation.x, triangulation.y))
+        return at_nodes[corners].ravel(), np.repeat(np.abs(first[0] * second[1] - first[1] * second[0]) / 6.0, 3)
+
     def image(self, values: FloatArray, grid: Grid) -> FloatArray:
         """Values, as `triangles` takes them, at the points of a ``grid`` in the plane, (rows, columns), nan outside
         the mesh."""

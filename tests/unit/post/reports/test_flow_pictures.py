@@ -9,17 +9,13 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.types import Fields
 from rigidfluid.post.reports.flow import EDGES, vorticity
 from rigidfluid.post.reports.moment import Moment
-from rigidfluid.post.reports.pictures import (
-    pressure_picture,
-    speed_picture,
-    streamline_picture,
-    vorticity_picture,
-    whole_mesh_picture,
-)
+from rigidfluid.post.reports.pictures import flow_picture, streamline_picture, whole_mesh_picture
 from rigidfluid.post.reports.raster import Grid
+from rigidfluid.post.reports.scale import QUANTITIES, Scale
 from rigidfluid.post.reports.section import Section
 from rigidfluid.post.reports.view_plane import ViewPlane
 
+SPEED = Scale("speed", 0.0, 1.0, 1.0)
 SPIN = np.array([0.3, -0.7, 1.9])
 
 
@@ -89,6 +85,17 @@ def test_a_quadratic_field_is_sampled_between_its_nodes_with_the_second_order() 
     assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
 
 
+def test_the_area_of_values_is_that_of_the_picture() -> None:
+    fields = square(3, (2.0, 0.5))
+    for quantity in QUANTITIES:
+        values, areas = moment(fields).section.spread(quantity)
+        assert values.shape == areas.shape
+        assert areas.sum() == pytest.approx(1.0)
+    rising = Fields(fields.points, fields.cells, fields.velocity, fields.points[:, 0])
+    values, areas = moment(rising).section.spread("pressure")
+    assert values @ areas == pytest.approx(1.0)
+
+
 def test_a_slice_through_a_tetrahedron_is_sampled_in_its_plane() -> None:
     corners = np.vstack([np.zeros(3), np.eye(3)])
     points = np.vstack([corners, corners[np.array(EDGES[4])].mean(axis=1)])
@@ -116,14 +123,15 @@ def swirl(size: tuple[float, float]) -> Moment:
 @pytest.mark.parametrize("size", [(1.0, 30.0), (30.0, 1.0), (1.0, 1.0)])
 def test_pictures_of_any_domain_fit_on_a_page(size: tuple[float, float]) -> None:
     shown = [swirl(size)] * 4
-    for figure in (speed_picture(shown), streamline_picture(shown), vorticity_picture(shown), pressure_picture(shown)):
+    figures = [flow_picture(shown, Scale(quantity, 0.0, 1.0, 1.0)) for quantity in QUANTITIES]
+    for figure in (*figures, streamline_picture(shown, SPEED), whole_mesh_picture(shown[0], SPEED)):
         assert np.all(np.array(figure.get_size_inches()) < 18.0)
-    assert np.all(np.array(whole_mesh_picture(shown[0]).get_size_inches()) < 18.0)
 
 
 def test_streamlines_go_along_the_flow_and_there_are_none_at_rest() -> None:
     def lines(moment: Moment) -> list[FloatArray]:
-        return [path for one in streamline_picture([moment]).axes[0].collections[1:] for path in one.get_segments()]
+        drawn = streamline_picture([moment], SPEED).axes[0].collections[1:]
+        return [path for one in drawn for path in one.get_segments()]
 
     turning = swirl((1.0, 1.0))
     ends = np.array([[path[0], path[-1]] for path in lines(turning)])
