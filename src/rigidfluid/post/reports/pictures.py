@@ -13,7 +13,7 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.post.reports.moment import Moment, View
 from rigidfluid.post.reports.raster import Grid
 from rigidfluid.post.reports.scale import Scale
-from rigidfluid.post.reports.style import BLACK, BODY, new_figure
+from rigidfluid.post.reports.style import BLACK, BODY, HATCH, OUTSIDE, new_figure
 
 TALLEST, NARROWEST = 8.0, 1.4
 """A panel's greatest height, and the least width of its place [inch]."""
@@ -60,7 +60,7 @@ def _mesh_panels(shown: Sequence[Moment], views: Sequence[View], scale: Scale) -
 
 
 def _panels(shown: Sequence[Moment], views: Sequence[View], scale: Scale, over: Over | None = None) -> Figure:
-    """One panel a moment, solids grey, the same colours for the same value in all."""
+    """One panel a moment, bodies grey, what is outside hatched, the same colours for the same value in all."""
     figure, panels = frame(len(shown), views[0], shown[0].section.plane.labels)
     for axes, moment, view in zip(panels, shown, views, strict=True):
         axes.tripcolor(
@@ -72,7 +72,7 @@ def _panels(shown: Sequence[Moment], views: Sequence[View], scale: Scale, over: 
         if over is not None:
             over(axes, moment, view)
         for outline in moment.outlines:
-            axes.plot(*outline.T, color=BLACK, linewidth=0.8)
+            axes.fill(*outline.T, facecolor=BODY, edgecolor=BLACK, linewidth=0.8)
         _look_at(axes, view)
         axes.set_title(f"time {moment.time:.4g}")
     scale.draw_bar(figure, panels, 3 if shown[0].section.is_slice else 2)
@@ -98,7 +98,7 @@ def frame(count: int, view: View, labels: tuple[str, str]) -> tuple[Figure, list
 
 
 def _look_at(axes: Axes, view: View) -> None:
-    axes.set_facecolor(BODY)
+    axes.patch.set(facecolor=OUTSIDE, edgecolor=HATCH, hatch="////", linewidth=0.0)
     axes.grid(visible=False)
     axes.set_aspect("equal")
     axes.set_xlim(view.lower[0], view.upper[0])

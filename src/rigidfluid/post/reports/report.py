@@ -73,7 +73,12 @@ def _flow_pictures(results: Results, plane: ViewPlane, body: int | None) -> Iter
     where = _slice_location(results, plane, watched)
     shown = [moment(results, output, plane, watched) for output in shown_outputs(results)]
     speed, turns, pressure = (shared_scale(results, quantity, plane, body) for quantity in QUANTITIES)
-    yield "speed_field", f"Speed of the fluid. Solids are grey.{where}", flow_picture(shown, speed), raster
+    yield (
+        "speed_field",
+        f"Speed of the fluid. Bodies are grey, what is outside is hatched.{where}",
+        flow_picture(shown, speed),
+        raster,
+    )
     caption = f"Streamlines, seen by an observer at rest, over the speed.{where}"
     if where:
         caption += " None where the flow makes more than 45° with the plane."

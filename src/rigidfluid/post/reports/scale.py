@@ -38,15 +38,15 @@ class Scale:
 
     @classmethod
     def fit(cls, quantity: Quantity, values: Sequence[FloatArray], areas: Sequence[FloatArray]) -> Scale:
-        """Fit the range to almost all of the area (K,) on which the values (K,) are.
+        """Fit the range to values (K,), each on an area (K,).
 
-        Speeds have even steps from zero. Vorticity and pressure are symmetric about it, and strong in small places:
-        squeezed, weak values have a colour, too.
+        Speeds have even steps from zero to the highest. Vorticity and pressure are symmetric about zero and strong,
+        even without bound, in small places: almost all of the area has colours of its own, weak values among them.
         """
         size, weights = np.abs(np.concatenate(values)), np.concatenate(areas)
-        usual, highest = np.percentile(size, (_USUAL, _MOST), weights=weights, method="inverted_cdf").tolist()
         if quantity == "speed":
-            return cls(quantity, 0.0, highest, highest)
+            return cls(quantity, 0.0, float(size.max()), float(size.max()))
+        usual, highest = np.percentile(size, (_USUAL, _MOST), weights=weights, method="inverted_cdf").tolist()
         return cls(quantity, -highest, highest, max(usual, _WEAKEST * highest))
 
     @property

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from matplotlib.colors import to_hex
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.types import Fields
@@ -13,6 +16,7 @@ from rigidfluid.post.reports.pictures import flow_picture, streamline_picture, w
 from rigidfluid.post.reports.raster import Grid
 from rigidfluid.post.reports.scale import QUANTITIES, Scale
 from rigidfluid.post.reports.section import Section
+from rigidfluid.post.reports.style import BODY, HATCH, OUTSIDE
 from rigidfluid.post.reports.view_plane import ViewPlane
 
 SPEED = Scale("speed", 0.0, 1.0, 1.0)
@@ -141,3 +145,23 @@ def test_streamlines_go_along_the_flow_and_there_are_none_at_rest() -> None:
         radius[:, 0], radius[:, 1], atol=0.005
     )  # circles; lines are bent to parts of the picture
     assert lines(moment(square(4))) == []
+
+
+def test_bodies_are_drawn_apart_from_what_is_outside() -> None:
+    """A body over the edge of a plane field, of which a quarter of the picture has none."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 60)
+    circle = 0.2 * np.stack([np.cos(angle), np.sin(angle)], axis=1) + [1.0, 0.5]
+    figure = flow_picture([replace(swirl((1.0, 1.0)), outlines=(circle,))], SPEED)
+    axes = figure.axes[0]
+    axes.set_xlim(0.5, 1.5)
+    figure.canvas.draw()
+    shown = np.asarray(figure.canvas.buffer_rgba())[..., :3]
+
+    def colour(x: float, y: float) -> set[str]:
+        column, row = axes.transData.transform((x, y)).round().astype(int)
+        near = shown[len(shown) - row - 12 : len(shown) - row + 12, column - 12 : column + 12].reshape(-1, 3)
+        return {to_hex(one / 255.0) for one in near}
+
+    assert colour(1.1, 0.5) == {BODY} == colour(0.9, 0.5)
+    assert {OUTSIDE, HATCH} <= colour(1.35, 0.5)
+    assert BODY not in colour(1.35, 0.5) | colour(0.6, 0.5)
