@@ -130,7 +130,7 @@ def _stage(results: Results, shot: Shot, look: Look, scale: Scale | None) -> tup
     image = axes.imshow(np.ones((2, 2, 3)), origin="lower", interpolation="nearest")
     if scale is not None:
         scale.draw_bar(figure, [axes], results.system.dimension)
-    return figure, axes, image
+    return results.units.put_into_labels(figure), axes, image
 
 
 def _label(axes: Axes, shot: Shot, state: int, time: float) -> None:

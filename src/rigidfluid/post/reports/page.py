@@ -11,6 +11,7 @@ from rigidfluid.core.output.verdict import verdict
 from rigidfluid.core.scene.scene_text import scene_text
 from rigidfluid.post.reports.coefficients import Figures
 from rigidfluid.post.reports.html import document, grid, table
+from rigidfluid.post.reports.units import Units
 
 _MOST_BODIES = 8
 _ENERGIES = {
@@ -63,6 +64,9 @@ def page(
         table(_energy(summary["energy"])),
         "<h2>Cost</h2>",
         table(_cost(summary)),
+    ]
+    parts = [
+        *map(Units.told_in(summary["scene"]).put_into, parts),
         "<h2>Scene</h2>",
         f"<details open><summary>With all defaults</summary><pre>{scene}</pre></details>",
         "<h2>Versions</h2>",

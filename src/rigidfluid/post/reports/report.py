@@ -62,7 +62,12 @@ def report(out: Path, plane: PlaneName = "motion", follow: str | None = None, mo
     body = None if follow is None else results.number_of(follow)
     with matplotlib.rc_context(STYLE), writing(out / FOLDER):
         (out / FOLDER).mkdir(exist_ok=True)
-        written, shown = save_pictures(_pictures(results, seen, body), out / FOLDER)
+        units = results.units
+        named = (
+            (name, units.put_into(caption), units.put_into_labels(figure), kinds)
+            for name, caption, figure, kinds in _pictures(results, seen, body)
+        )
+        written, shown = save_pictures(named, out / FOLDER)
         (out / PAGE).write_text(page(results.summary, shown, _notes(results), _figures(results)), encoding="utf-8")
     return [*written, out / PAGE]
 

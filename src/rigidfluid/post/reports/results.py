@@ -27,6 +27,7 @@ from rigidfluid.core.setup.assemble import assemble
 from rigidfluid.core.setup.description import IN_PYTHON
 from rigidfluid.core.setup.model import Model
 from rigidfluid.errors import OutputError
+from rigidfluid.post.reports.units import Units
 
 NEEDED = (
     *("scene", "status", "versions", "time", "steps", "rejected_steps", "remeshes", "cells", "unknowns"),
@@ -64,6 +65,11 @@ class Results:
     def names(self) -> tuple[str, ...]:
         """Names of the bodies."""
         return self.system.surfaces[: len(self.system.bodies)]
+
+    @property
+    def units(self) -> Units:
+        """Names of units, if the scene has any."""
+        return Units.told_in(self.model.document)
 
     @property
     def joint_names(self) -> tuple[str, ...]:
