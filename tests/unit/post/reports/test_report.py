@@ -30,7 +30,7 @@ FIELD_PICTURES = {
     for name in ("speed_field", "streamlines", "vorticity", "pressure", "whole_mesh", "mesh", "smallest_gap")
 }
 CURVES = {"position", "speed", "gap", "force", "energy"}
-OF_A_FALL = CURVES | {"coefficients", "step"}
+OF_A_FALL = CURVES | {"step"}
 
 
 @pytest.fixture(scope="module")

@@ -257,9 +257,7 @@ def test_a_report_of_a_3d_flow(wet: Path) -> None:
     page = (wet / "report.html").read_text(encoding="utf-8")
     assert "In the xz-plane through ball." in page
     results = read_results(wet)
-    by = reference(results)
-    assert by is not None
-    np.testing.assert_allclose(by.axes[1] @ plane_of_motion(results).normal, 0.0, atol=1e-12)
+    assert reference(results) is None
 
 
 @pytest.mark.parametrize(("arguments", "text"), [(["--follow", "nobody"], "nobody"), (["--plane", "zx"], "zx")])
