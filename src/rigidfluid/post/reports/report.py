@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -10,7 +11,7 @@ import numpy as np
 
 from rigidfluid.core.output.disk import writing
 from rigidfluid.core.output.results_folder import refuse_links
-from rigidfluid.core.output.run_files import RUN
+from rigidfluid.core.output.run_files import FILES, RUN
 from rigidfluid.core.setup.model import Model
 from rigidfluid.post.reports.coefficient_plot import coefficient_caption, coefficient_plot
 from rigidfluid.post.reports.coefficients import Figures, figures, reference
@@ -68,7 +69,7 @@ def report(out: Path, plane: PlaneName = "motion", follow: str | None = None, mo
             for name, caption, figure, kinds in _pictures(results, seen, body)
         )
         written, shown = save_pictures(named, out / FOLDER)
-        (out / PAGE).write_text(page(results.summary, shown, _notes(results), _figures(results)), encoding="utf-8")
+        (out / PAGE).write_text(page(results, _data(out), shown, _notes(results), _figures(results)), encoding="utf-8")
     return [*written, out / PAGE]
 
 
@@ -143,6 +144,14 @@ def _pictures(results: Results, plane: ViewPlane, body: int | None) -> Iterator[
     yield "energy", "Energy supplied, and where it is.", energy_plot(results), both
     if results.model.time.tolerance is not None:
         yield "step", "How long the steps are.", step_plot(results), both
+
+
+def _data(out: Path) -> Iterator[tuple[str, str]]:
+    """Names and content of the files that the run has written so far, but for those in folders."""
+    for files in FILES:
+        for path in sorted(out.iterdir()):
+            if re.fullmatch(files.pattern, path.name) and path.name != PAGE and path.suffix != ".part":
+                yield path.name, files.content.replace("`", "")
 
 
 def _figures(results: Results) -> list[tuple[str, Figures]]:

@@ -17,7 +17,7 @@ BLACK, ORANGE, SKY, GREEN, BLUE, VERMILLION, PURPLE = (
 PALETTE = (BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY, BLACK)
 BODY = "#8c8c8c"
 OUTSIDE, HATCH = "#ededed", "#bcbcbc"
-"""What is not in the domain: its ground, and the oblique lines on it, which bodies have not."""
+"""Ground and oblique lines of what is not in the domain."""
 SOLID = "#d8d8d8"
 """Bodies under a light."""
 
