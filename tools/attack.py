@@ -12,7 +12,6 @@ from __future__ import annotations
 import argparse
 import importlib
 import os
-import subprocess
 import sys
 from collections.abc import Callable, Iterable
 from datetime import date
@@ -20,6 +19,7 @@ from typing import Any
 
 from attacks.page import write_attack_page
 from attacks.trials import Trial, failures, keep, rows
+from checkout import commit
 
 KINDS: dict[str, tuple[str, str, int]] = {
     "scenes": ("attacks.scenes", "attack_scenes", 1500),
@@ -57,12 +57,6 @@ def made(kind: str, count: int, seed: int) -> dict[str, Any]:
     origin = {"command": command, "date": f"{date.today()}", "commit": commit()}
     found = soak() if kind == "soak" else attack(kind, count, seed)
     return origin | {"cpu_seconds": round(sum(os.times()[:4]))} | found
-
-
-def commit() -> str:
-    """The commit that is attacked, marked where files differ from it."""
-    command = ["git", "describe", "--always", "--dirty", "--abbrev=8", "--exclude=*"]
-    return subprocess.run(command, capture_output=True, text=True, check=False).stdout.strip() or "unknown"
 
 
 def main() -> int:

@@ -19,7 +19,6 @@ import os
 import resource
 import shutil
 import signal
-import subprocess
 import sys
 import tomllib
 from collections import Counter
@@ -30,7 +29,8 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import NamedTuple
 
-ROOT = Path(__file__).resolve().parents[1]
+from checkout import ROOT, commit
+
 LIST = Path(__file__).with_suffix(".toml")
 FOLDER = ROOT / "out" / "mutants"
 SOURCES = Path("src", "rigidfluid")
@@ -267,14 +267,6 @@ def _cpu_of_children() -> float:
     return used.ru_utime + used.ru_stime
 
 
-def _commit() -> str:
-    """Commit of the checkout, and whether anything differs from it."""
-    git = ["git", "-C", str(ROOT)]
-    commands = [*git, "rev-parse", "--short", "HEAD"], [*git, "status", "--porcelain", "src", "tests"]
-    head, changed = (subprocess.run(one, capture_output=True, text=True, check=True).stdout for one in commands)
-    return head.strip() + (" with changes" if changed else "")
-
-
 def main() -> int:
     """Test the mutations, print a line for each, and write the page."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -293,7 +285,7 @@ def main() -> int:
     seen = sum(outcome.verdict != "survived" for outcome in found)
     print(f"{seen} of {len(found)} killed, in {sum(outcome.seconds for outcome in found) / 60.0:.1f} CPU minutes")
     if given.page:
-        given.page.write_text(page(found, _commit()), encoding="utf-8")
+        given.page.write_text(page(found, commit()), encoding="utf-8")
     return int(seen < WANTED * len(found))
 
 

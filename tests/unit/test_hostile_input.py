@@ -91,11 +91,13 @@ def test_the_end_of_a_queue_or_a_terminal_leaves_a_summary(tmp_path: Path, numbe
         pytest.skip("nohup, under which this runs, has it ignored, and so would a run")
     command = [*COMMAND, "run", str(SCENE), "--set", "time.end=1e4", "--out", str(tmp_path)]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-    while process.poll() is None and not (tmp_path / "state.h5").exists():
+    saved: set[int] = set()
+    while process.poll() is None and len(saved) < 2:  # the first is that of the start, before a run hears signals
+        saved |= {state.stat().st_mtime_ns for state in tmp_path.glob("state.h5")}
         time.sleep(0.02)
     process.send_signal(getattr(signal, number))
     _, said = process.communicate(timeout=60)
-    assert process.returncode == 130
+    assert process.returncode == 130, said
     assert "Interrupted." in said
     assert '"status": "interrupted"' in (tmp_path / "summary.json").read_text()
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import sys
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import typer
 from rich.box import SIMPLE_HEAD
@@ -13,6 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rigidfluid.cli.console import make_console, reported, tell
+from rigidfluid.start.wishes import CHOICES, Fluid, Shape, Units, Wishes
 
 
 def _names() -> list[str]:
@@ -25,22 +26,11 @@ def _names() -> list[str]:
 NewFile = Annotated[Path, typer.Argument(metavar="FILE", help="Scene file to write.")]
 Dimension = Annotated[int | None, typer.Option(min=2, max=3, help="Number of space dimensions; 2 if not given.")]
 Bodies = Annotated[int | None, typer.Option(min=1, max=200, help="Number of bodies; 1 if not given.")]
-ShapeName = Annotated[
-    Literal["sphere", "ellipsoid", "polygon"] | None,
-    typer.Option(help="Of the bodies; sphere if not given: in 2D a disk."),
-]
+ShapeName = Annotated[Shape | None, typer.Option(help="Of the bodies; sphere if not given: in 2D a disk.")]
 Size = Annotated[float | None, typer.Option(help="Width of the box in the units; 2 cm if not given.")]
-FluidName = Annotated[
-    Literal["water", "oil", "glycerine", "none"] | None, typer.Option(help="In the box; oil if not given.")
-]
+FluidName = Annotated[Fluid | None, typer.Option(help="In the box; oil if not given.")]
 Gravity = Annotated[float | None, typer.Option(min=0.0, help="Downwards, in the units; the Earth's if not given.")]
-UnitsName = Annotated[Literal["cm", "m", "mm"] | None, typer.Option(help="Of lengths, with s and g, kg or mg.")]
-_CHOICES = {
-    "units": ["cm", "m", "mm"],
-    "dimension": ["2", "3"],
-    "shape": ["sphere", "ellipsoid", "polygon"],
-    "fluid": ["water", "oil", "glycerine", "none"],
-}
+UnitsName = Annotated[Units | None, typer.Option(help="Of lengths, with s and g, kg or mg.")]
 ExampleName = Annotated[
     str | None,
     typer.Argument(metavar="NAME", help="Scene to copy here; all are listed without.", autocompletion=_names),
@@ -73,7 +63,7 @@ def new(
     """Write a scene of one's own, of bodies in a box, that passes `check`; on a terminal asks for what is not given."""
     with reported():
         from rigidfluid.start.new_file import require_new, write_new
-        from rigidfluid.start.new_scene import Wishes, new_scene
+        from rigidfluid.start.new_scene import new_scene
 
         require_new(file)
         given = {"units": units, "dimension": dimension, "bodies": bodies, "shape": shape, "fluid": fluid, "size": size}
@@ -93,15 +83,13 @@ def _asked(given: dict[str, Any]) -> dict[str, Any]:
         return {key: value for key, value in given.items() if value is not None}
     from rich.prompt import FloatPrompt, IntPrompt, Prompt
 
-    from rigidfluid.start.new_scene import Wishes
-
     prompts: dict[type, Any] = {str: Prompt, int: IntPrompt, float: FloatPrompt}
     answers: dict[str, Any] = {}
     for key, value in given.items():
         default = Wishes(**answers).width if key == "size" else getattr(Wishes, key)
         ask = prompts[type(default)].ask
         found = (
-            ask(key, choices=_CHOICES.get(key), default=default, console=make_console(True)) if value is None else value
+            ask(key, choices=CHOICES.get(key), default=default, console=make_console(True)) if value is None else value
         )
         answers[key] = found
     return answers

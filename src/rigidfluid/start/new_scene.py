@@ -4,41 +4,18 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import ceil
-from typing import Literal
 
 from rigidfluid.checks import Finding, Report, check
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.errors import SceneError
-from rigidfluid.start.scene_text import UNITS, Numbers, scene_text
-
-Shape = Literal["sphere", "ellipsoid", "polygon"]
-Fluid = Literal["water", "oil", "glycerine", "none"]
-Units = Literal["cm", "m", "mm"]
+from rigidfluid.start.scene_text import Numbers, scene_text
+from rigidfluid.start.wishes import Wishes
 
 _TRIALS = 8
 _MARGIN = 0.9
 """Share that is taken of what a check says would be enough at most."""
-
-
-@dataclass(frozen=True)
-class Wishes:
-    """Wishes of a user: bodies of a ``shape`` in a box of a ``size`` [length], None: 2 cm wide; in a ``fluid``, with
-    ``gravity`` downwards [length/time²], None: that of the Earth."""
-
-    dimension: Literal[2, 3] = 2
-    bodies: int = 1
-    shape: Shape = "sphere"
-    size: float | None = None
-    fluid: Fluid = "oil"
-    gravity: float | None = None
-    units: Units = "cm"
-
-    @property
-    def width(self) -> float:
-        """Width of the box [length]."""
-        return 0.02 / UNITS[self.units][2] if self.size is None else self.size
 
 
 def new_scene(wishes: Wishes, name: str) -> tuple[str, Report]:

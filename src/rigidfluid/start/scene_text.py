@@ -7,7 +7,7 @@ from math import ceil
 from typing import TYPE_CHECKING, Self
 
 if TYPE_CHECKING:
-    from rigidfluid.start.new_scene import Wishes
+    from rigidfluid.start.wishes import Wishes
 
 UNITS = {"cm": ("cm", "g", 1e-2, 1e-3), "m": ("m", "kg", 1.0, 1.0), "mm": ("mm", "mg", 1e-3, 1e-6)}
 """Units of length and mass, and what they are in m and kg."""

@@ -15,7 +15,8 @@ from rigidfluid import load_scene
 from rigidfluid.checks import check
 from rigidfluid.cli import app
 from rigidfluid.errors import SceneError
-from rigidfluid.start.new_scene import Wishes, new_scene
+from rigidfluid.start.new_scene import new_scene
+from rigidfluid.start.wishes import Wishes
 
 GRID = [
     (),

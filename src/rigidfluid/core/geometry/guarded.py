@@ -137,8 +137,13 @@ def _blamed(cls: type, key: str) -> Iterator[None]:
         raise told_of(cls, key, error) from error
 
 
-def told_of(part: Any, key: str, error: BaseException) -> RigidfluidError:
-    """Error of a part, or its class, that names its method or attribute ``key`` and what that has raised or given."""
+def told_of(part: Any, key: str, error: BaseException) -> RigidfluidError | KeyboardInterrupt:
+    """Error of a part, or its class, that names its method or attribute ``key`` and what that has raised or given.
+
+    An interrupt that comes within compiled code is an interrupt, though Python makes a SystemError of it.
+    """
+    if isinstance(error, SystemError) and isinstance(error.__cause__, KeyboardInterrupt):
+        return error.__cause__
     subject = f"{named(part if isinstance(part, type) else type(part))}, {key}"
     if isinstance(error, Wrong):
         if error.shorter:

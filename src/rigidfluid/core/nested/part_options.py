@@ -47,9 +47,7 @@ def refuse_unread(
     raise_all([unknown_key(f"{at}.{key}", known | set(common), hint) for key in options if key not in known])
 
 
-def read_options(
-    part: type[Part], options: Mapping[str, Any], common: Mapping[str, Any], at: str
-) -> PartOptions:
+def read_options(part: type[Part], options: Mapping[str, Any], common: Mapping[str, Any], at: str) -> PartOptions:
     """Options of a part whose table has keys that are ``common`` to all such tables; raises SceneError for all that are
     unknown or refused. A misspelt key is told once, and not missed too."""
     meant = {nearest(key, fields_by_key(part.Options)): value for key, value in options.items()}

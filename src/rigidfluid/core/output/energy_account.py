@@ -119,10 +119,11 @@ def energy_account(energy: Table) -> EnergyAccount:
     )
 
 
-def energy_warnings(energy: Table) -> list[EnergyWarning]:
+def energy_warnings(energy: Table, account: EnergyAccount) -> list[EnergyWarning]:
     """Warn of energy created, lost, or unaccounted for at the end and neither of these, and of energy that
-    stabilisation took, if noticeable; ``energy``: the table by column, "time" (s,) [time] and others (s,) [energy]."""
-    account, lost = energy_account(energy), lost_by_cause(energy)
+    stabilisation took, if noticeable; ``energy``: the table by column, "time" (s,) [time] and others (s,) [energy], and
+    its ``account``."""
+    lost = lost_by_cause(energy)
     unexplained = lost | {"residual_contacts": lost["residual_contacts"] - energy["path_friction"]}
     created, vanished = account.share(account.creation.largest), account.share(account.loss.largest)
     warnings = []

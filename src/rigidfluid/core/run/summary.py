@@ -50,6 +50,7 @@ ENERGIES = (*LEDGER_COLUMNS, "relative_residual", *ACCOUNT, *FLOWS)
 
 def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
     """All of summary.json but the list of files."""
+    account = energy_account(simulation.history.energy)
     state, system, extremes = simulation.state, simulation.system, simulation.extremes
     mesh, found, problem = simulation.model.fluid.mesh, _cycles(simulation), system.fluid
     radii = {name: body.bounding_radius for name, body in zip(system.surfaces, system.bodies, strict=False)}
@@ -60,7 +61,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
     jumps = remesh_jumps(simulation.history, radii) if simulation.counts.remeshes else {}
     remarks += jump_remarks(jumps)
     if inertia:
-        remarks += turn_remarks(simulation.history)
+        remarks += turn_remarks(simulation.history, account)
     return {
         "status": status,
         "scene": simulation.model.document,
@@ -88,7 +89,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         **_caller_values(state, system),
         "remesh_jumps": jumps,
         "remarks": [asdict(remark) for remark in remarks],
-        "energy": energy_balance(state.ledger, simulation.history.energy),
+        "energy": energy_balance(state.ledger, simulation.history.energy, account),
         "auto_epsilon": chosen_strengths(system),
     }
 
@@ -146,13 +147,12 @@ def reynolds_numbers(model: Model, system: System, speeds: FloatArray) -> dict[s
     }
 
 
-def energy_balance(ledger: Ledger, energy: Table) -> dict[str, Any]:
+def energy_balance(ledger: Ledger, energy: Table, account: EnergyAccount) -> dict[str, Any]:
     """Energy stored, that came in and that went out [energy], the shares of it that came from nowhere or vanished, and
-    the ``warnings`` of that; by the ledger at the end and the table of ``energy`` over time."""
-    account = energy_account(energy)
+    the ``warnings`` of that; by the ledger at the end, the table of ``energy`` over time and its ``account``."""
     stored = {name: getattr(ledger, name) for name in (*LEDGER_COLUMNS, "relative_residual")}
     shares = {name: getattr(account, name) for name in ACCOUNT} | _flows(account, energy["time"])
-    return stored | shares | {"warnings": [asdict(warning) for warning in energy_warnings(energy)]}
+    return stored | shares | {"warnings": [asdict(warning) for warning in energy_warnings(energy, account)]}
 
 
 def _flows(account: EnergyAccount, time: FloatArray) -> dict[str, Any]:

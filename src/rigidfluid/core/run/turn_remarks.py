@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.output.energy_account import NOTICEABLE, energy_account
+from rigidfluid.core.output.energy_account import NOTICEABLE, EnergyAccount
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import columns
 from rigidfluid.core.run.remarks import Remark
@@ -16,15 +16,13 @@ TOLERANCE = 0.003
 """Tolerance by which steps find their length by themselves."""
 
 
-def turn_remarks(history: History) -> list[Remark]:
+def turn_remarks(history: History, account: EnergyAccount) -> list[Remark]:
     """Warn of the body that turned most in a step, if that was much and steps too long have lost energy.
 
     Flow that is the same all round a body keeps its energy however fast the body spins. Flow that is carried round with
     it is damped by steps of a radian and more, and by as much at half the step, so that halving the step shows nothing.
     """
-    energy = history.energy
-    account = energy_account(energy)
-    loss, steps = account.loss, energy["residual_steps"]
+    loss, steps = account.loss, history.energy["residual_steps"]
     if account.share(min(loss.largest, steps[loss.end] - steps[loss.start])) < NOTICEABLE:
         return []
     spins = tuple(name for name in columns(history.dimension)["bodies"] if name in ("w", "wx", "wy", "wz"))

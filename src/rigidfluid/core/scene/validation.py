@@ -145,9 +145,7 @@ def refuse_out_of_proportion(field: str, number: float) -> None:
         raise SceneError(field, found, allowed, "Choose units in which it is nearer to 1.")
 
 
-def _told(
-    model: type[BaseModel], complaint: ErrorDetails, complaints: Sequence[ErrorDetails], at: str
-) -> SceneError:
+def _told(model: type[BaseModel], complaint: ErrorDetails, complaints: Sequence[ErrorDetails], at: str) -> SceneError:
     """The error of one of several complaints."""
     if complaint["type"] == "extra_forbidden":
         return _needless_key(_place(model, complaint["loc"][:-1], at), str(complaint["loc"][-1]))

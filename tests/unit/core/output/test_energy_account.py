@@ -9,6 +9,10 @@ from made_up_energy import PUT_IN, table
 from rigidfluid.core.output.energy_account import energy_account, energy_warnings, per_cent
 
 
+def warned(energy):
+    return energy_warnings(energy, energy_account(energy))
+
+
 def test_a_balance_that_closes():
     account = energy_account(table(kinetic=[10, 9, 8, 7, 6, 5], dissipation=[0, 1, 2, 3, 4, 5]))
     assert (account.put_in, account.created, account.lost, account.unaccounted) == (PUT_IN, 0.0, 0.0, 0.0)
@@ -59,7 +63,7 @@ def test_where_nothing_was_put_in(states):
     energy = {name: values[:states] for name, values in table(kinetic=np.zeros(6)).items()}
     account = energy_account(energy)
     assert (account.put_in, account.created, account.lost, account.unaccounted, account.path_friction) == (0.0,) * 5
-    assert energy_warnings(energy) == []
+    assert warned(energy) == []
 
 
 def test_a_run_that_stopped_in_its_first_step():
@@ -117,13 +121,13 @@ def after_blow(change, before=PUT_IN):
     ],
 )
 def test_a_warning_names_the_causes_with_their_figures(energy, text, remedy):
-    (warning,) = energy_warnings(energy)
+    (warning,) = warned(energy)
     assert text in warning.text
     assert remedy in warning.remedy
 
 
 def test_small_causes_are_not_told():
-    (warning,) = energy_warnings(blow(-0.4, mesh=0.03))
+    (warning,) = warned(blow(-0.4, mesh=0.03))
     assert "slip" not in warning.text
 
 
@@ -131,24 +135,22 @@ def test_what_re_meshing_took_has_vanished():
     energy = table(kinetic=[10, 10, 10, 9.6, 9.6, 9.6], transfer_loss=after_blow(0.4, 0))
     assert energy_account(energy).unaccounted == pytest.approx(0.0)
     assert energy_account(energy).lost == pytest.approx(0.04)
-    (warning,) = energy_warnings(energy)
+    (warning,) = warned(energy)
     assert "4 % of the energy at hand vanished between 0.2 and 0.3: 4 % by re-meshing" in warning.text
 
 
 def test_what_re_meshing_made_came_from_nowhere():
-    (warning,) = energy_warnings(table(kinetic=after_blow(0.4), transfer_loss=after_blow(-0.4, 0)))
+    (warning,) = warned(table(kinetic=after_blow(0.4), transfer_loss=after_blow(-0.4, 0)))
     assert "4 % of the energy at hand came from nowhere between 0.2 and 0.3: 4 % by re-meshing" in warning.text
 
 
 def test_friction_of_impacts_excuses_what_impacts_lost():
     energy = blow(-1.0, contacts=0.8) | {"path_friction": np.array(after_blow(0.7, 0))}
-    assert (
-        "3 % of the energy at hand vanished between 0.2 and 0.3: 2 % by a time.step" in energy_warnings(energy)[0].text
-    )
+    assert "3 % of the energy at hand vanished between 0.2 and 0.3: 2 % by a time.step" in warned(energy)[0].text
 
 
 def test_energy_may_come_and_vanish():
-    came, vanished = energy_warnings(table(kinetic=[10, 10, 10, 9.8, 10.8, 10.8]))
+    came, vanished = warned(table(kinetic=[10, 10, 10, 9.8, 10.8, 10.8]))
     assert "came from nowhere" in came.text
     assert "vanished" in vanished.text
 
@@ -156,29 +158,29 @@ def test_energy_may_come_and_vanish():
 @pytest.mark.parametrize(("change", "told"), [(0.3, "came from nowhere"), (-0.3, "vanished")])
 def test_a_bad_start_is_told(change, told):
     energy = table(kinetic=[10, *[10 + change] * 5], residual_start=[0, *[-change] * 5])
-    (warning,) = energy_warnings(energy)
+    (warning,) = warned(energy)
     assert f"3 % of the energy at hand {told} between 0 and 0.1: 3 % in first steps" in warning.text
 
 
 def test_friction_of_impacts_leaves_energy_unaccounted_for():
     energy = blow(-0.6, contacts=0.6) | {"path_friction": np.array(after_blow(0.59, 0))}
-    (warning,) = energy_warnings(energy)
+    (warning,) = warned(energy)
     assert warning.serious
     assert "6 % of the energy put in is unaccounted for at the end: 6 % at impacts" in warning.text
 
 
 def test_what_is_told_as_lost_is_not_told_again():
-    assert len(energy_warnings(blow(-0.3))) == 1
+    assert len(warned(blow(-0.3))) == 1
 
 
 @pytest.mark.parametrize("change", [0.09, -0.09])
 def test_little_is_not_warned_of(change):
-    assert energy_warnings(blow(change)) == []
+    assert warned(blow(change)) == []
 
 
 @pytest.mark.parametrize(("change", "serious"), [(0.2, False), (0.49, False), (0.51, True), (-0.49, False), (-2, True)])
 def test_from_a_twentieth_on_a_warning_is_serious(change, serious):
-    (warning,) = energy_warnings(blow(change))
+    (warning,) = warned(blow(change))
     assert warning.serious == serious
     assert ("do not rely on this run" in warning.text) == serious
 

@@ -14,6 +14,10 @@ from rigidfluid.core.output.energy_flows import largest_growth
 ERROR = 0.3
 
 
+def warned(energy):
+    return energy_warnings(energy, energy_account(energy))
+
+
 def shares(energy):
     """What came from nowhere, and what vanished, over what was at hand."""
     account = energy_account(energy)
@@ -34,7 +38,7 @@ def step_at(state, states, change):
 def test_a_loss_hides_no_creation_after_it():
     energy = table(kinetic=[10, 10, 9.2, 9.2, 9.6, 9.6])
     assert shares(energy) == pytest.approx((0.04, 0.08))
-    came, vanished = energy_warnings(energy)
+    came, vanished = warned(energy)
     assert "4 % of the energy at hand came from nowhere between 0.3 and 0.4" in came.text
     assert "8 % of the energy at hand vanished between 0.1 and 0.2" in vanished.text
 
@@ -58,7 +62,7 @@ def test_what_flows_through_does_not_make_an_error_small(state, sign):
     for lengths in (1, 2, 4):
         energy = through(lengths, kinetic=step_at(state, 50 * lengths + 1, sign * ERROR))
         assert max(shares(energy)) == pytest.approx(0.03)
-        assert len(energy_warnings(energy)) == 1
+        assert len(warned(energy)) == 1
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
@@ -79,7 +83,7 @@ def test_a_loss_is_told_where_nothing_was_put_in(way):
     energy["residual"] = energy["residual_steps"] = 0.135 * (np.arange(6) > 2)
     assert energy_account(energy).put_in <= 0.0
     assert shares(energy)[1] > 0.1
-    assert any("vanished" in warning.text and warning.serious for warning in energy_warnings(energy))
+    assert any("vanished" in warning.text and warning.serious for warning in warned(energy))
 
 
 def test_all_that_came_in_and_vanished_is_told():
@@ -107,7 +111,7 @@ def test_a_swing_that_comes_back_is_no_creation_but_is_summed():
     account = energy_account(table(201, kinetic=10.0 + 0.05 * (np.arange(201) % 2)))
     assert account.creation.largest == pytest.approx(0.05)
     assert account.creation.summed == pytest.approx(100 * 0.05)
-    assert energy_warnings(table(201, kinetic=10.0 + 0.05 * (np.arange(201) % 2))) == []
+    assert warned(table(201, kinetic=10.0 + 0.05 * (np.arange(201) % 2))) == []
 
 
 @pytest.mark.parametrize(("states", "stretch"), [(6, 10.0), (50, 20.0), (500, 20.0)])
