@@ -120,7 +120,7 @@ def read_results(folder: Path, *, motion_only: bool = False, model: Model | None
     """
     complete = (folder / SUMMARY).exists()
     if not complete and not (folder / CHECKPOINT).exists():
-        raise _unreadable(folder / SUMMARY, "no file")
+        raise _unreadable(folder / SUMMARY, f"no file, and no {CHECKPOINT}")
     series = read_pvd(folder / SERIES) if (folder / SERIES).exists() else ()  # before tables, which may grow
     summary = _summary(folder / SUMMARY) if complete else {}
     told = summary["scene"] if complete else read_scene(folder / CHECKPOINT)
