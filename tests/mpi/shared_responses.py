@@ -1,4 +1,4 @@
-"""Under mpirun: impulse responses by DOLFINx' backend on all processes beside those of scikit-fem's on each alone.
+"""Under mpirun: impulse responses by DOLFINx' backend on all processes against those of scikit-fem's on each alone.
 
     mpirun -n 2 python shared_responses.py SCENE MORE
 

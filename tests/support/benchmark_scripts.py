@@ -14,7 +14,7 @@ FOLDER = Path(__file__).parents[2] / "benchmarks"
 
 @contextmanager
 def benchmark(name: str) -> Iterator[ModuleType]:
-    """benchmarks/NAME.py, imported with those beside it that it asks for; all are forgotten afterwards."""
+    """benchmarks/NAME.py, imported with those next to it that it asks for; all are forgotten afterwards."""
     sys.path.insert(0, str(FOLDER))
     try:
         yield importlib.import_module(name)

@@ -99,7 +99,7 @@ def flow_from_within(layers: int, outside: str) -> Flow:
 
 
 def from_within(_time: float, at: FloatArray) -> FloatArray:
-    """x/|x|²; its stress across circles is -2μ/|x|² beside the pressure."""
+    """x/|x|²; its stress across circles is -2μ/|x|² besides the pressure."""
     return at / np.sum(at**2, axis=1, keepdims=True)
 
 

@@ -41,7 +41,7 @@ class CurvedGap:
 
 
 def curved_gaps(sizes: tuple[float, ...] = (0.1, 0.05, 0.025)) -> Iterator[CurvedGap]:
-    """Shapes at places beside and in the throat, with facets of some sizes."""
+    """Shapes at places next to and in the throat, with facets of some sizes."""
     domain = Stenosis(StenosisOptions(length=32.0, width=8.0, radius=BUMP), 2)
     walls = list(surfaces_of(domain, 1))
     bumps = [wall for wall in walls if wall.shape.plane is None]

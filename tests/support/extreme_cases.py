@@ -28,7 +28,7 @@ from extreme_wet import blade, floor_hit, let_go, resting, settling, squeezed, s
 from fluid_contacts import Stepping, put_in
 
 from rigidfluid.core.model.system import System
-from rigidfluid.core.output.energy_account import NOTICEABLE
+from rigidfluid.core.output.energy_account import NOTICEABLE, energy_account
 from rigidfluid.core.output.history import History
 from rigidfluid.core.run.process import one_openblas_thread
 from rigidfluid.core.run.simulation import Simulation
@@ -178,7 +178,7 @@ def _created_at_first(system: System, history: History) -> float:
 
 def _lost_untold(system: System, history: History) -> float:
     """What was lost by a run that names no body that turned too far in a step."""
-    return 0.0 if turn_remarks(history) else _lost(system, history)
+    return 0.0 if turn_remarks(history, energy_account(history.energy)) else _lost(system, history)
 
 
 def _lost(system: System, history: History) -> float:

@@ -124,7 +124,7 @@ class Gathered(FluidBackend):
         """The step with all points on the root, of use there alone."""
         if step.points is None:
             return step
-        moved = self._whole(mesh.at(step.points))
+        moved = self._whole(mesh.moved_to(step.points))
         return replace(step, points=moved.geometry) if self.ranks.is_root else step
 
     def _whole(self, mesh):
@@ -133,7 +133,7 @@ class Gathered(FluidBackend):
         if made is None:
             return None
         kept = self._meshes.setdefault(id(mesh.cells), (mesh.cells, made))[1]
-        return kept.at(made.geometry)
+        return kept.moved_to(made.geometry)
 
 
 class OnTheRoot:

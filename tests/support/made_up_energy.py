@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rigidfluid.core.output.energy_account import energy_account, energy_warnings
 from rigidfluid.core.output.energy_flows import PARTS
 from rigidfluid.core.output.records import LEDGER_COLUMNS
 
@@ -21,3 +22,8 @@ def table(states=6, **columns):
     energy["residual"] = incoming - outgoing - (stored - stored[0])
     energy["residual_steps"] = energy["residual"] - sum(energy[name] for name in PARTS if name != "residual_steps")
     return energy
+
+
+def warned(energy):
+    """Warnings of a table's own account."""
+    return energy_warnings(energy, energy_account(energy))

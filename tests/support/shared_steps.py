@@ -1,4 +1,4 @@
-"""Under mpirun: steps of DOLFINx' backend on all processes beside those of scikit-fem's on each alone.
+"""Under mpirun: steps of DOLFINx' backend on all processes against those of scikit-fem's on each alone.
 
     mpirun -n 3 python shared_steps.py SCENE MORE
 

@@ -47,7 +47,7 @@ class _Feet(NamedTuple):
 class FormedSurface(Surface):
     """Faces with known forms, each bounded by its facets; a face without is what its facets are.
 
-    Beside an edge of a face, where the nearest point of its form is beyond it, the nearest point is that of the facets,
+    Near an edge of a face, where the nearest point of its form is beyond it, the nearest point is that of the facets,
     put onto the form: it is off by what the facets cut off.
 
     ``facets`` are fine ones with vertices on the faces, marked by the number of their face in ``forms``, None where a

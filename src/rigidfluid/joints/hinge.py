@@ -8,7 +8,6 @@ from typing import ClassVar
 import numpy as np
 from pydantic import Field
 
-from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.joints.constraints import Constraint, SameAxis, SamePoint
 from rigidfluid.core.joints.coordinates import Angle, Coordinate
 from rigidfluid.core.joints.markers import MarkerPair, axes_along
@@ -50,10 +49,6 @@ class Hinge(OneCoordinate):
             raise SceneError("joint.axis", list(options.axis), "none in 2D, where all axes are one", "Remove it.")
         self._axes = np.eye(2) if dimension == 2 else axes_along(unit_axis(options.axis, self.name, 3))
         super().__init__(options, dimension)
-
-    @property
-    def axes(self) -> FloatArray:
-        return self._axes
 
     def held(self, name: str, markers: MarkerPair) -> Sequence[Constraint]:
         """The same point, and in 3D the same axis."""

@@ -41,11 +41,16 @@ class OneCoordinate(Joint):
     coordinate: Coordinate
     rest_key: ClassVar[str]
     options: CoordinateOptions
+    _axes: FloatArray
 
     def __init__(self, options: CoordinateOptions, dimension: int) -> None:
         super().__init__(options, dimension)
         self._refuse_contradictions()
         self.drive = None if options.drive is None else build_stroke(options.drive, "joint.drive")
+
+    @property
+    def axes(self) -> FloatArray:
+        return self._axes
 
     @abstractmethod
     def held(self, name: str, markers: MarkerPair) -> Sequence[Constraint]:

@@ -7,7 +7,6 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.joints.constraints import Constraint, OnAxis, SameOrientation
 from rigidfluid.core.joints.coordinates import Coordinate, Displacement
 from rigidfluid.core.joints.markers import MarkerPair, axes_along
@@ -48,10 +47,6 @@ class Slider(OneCoordinate):
     def __init__(self, options: SliderOptions, dimension: int) -> None:
         self._axes = axes_along(unit_axis(options.axis, self.name, dimension))
         super().__init__(options, dimension)
-
-    @property
-    def axes(self) -> FloatArray:
-        return self._axes
 
     def held(self, name: str, markers: MarkerPair) -> Sequence[Constraint]:
         """The same axis and orientation."""

@@ -11,7 +11,7 @@ from rigidfluid.core.mechanics.kinematics import prescribed_part
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.model.types import Advance, FluidState, Mesh, Step, Twist, Wrench
-from rigidfluid.taylor_hood.boundary import face_power, pressure_load, spurious_flux
+from rigidfluid.taylor_hood.boundary import FaceFlow, pressure_load
 from rigidfluid.taylor_hood.container import container_velocity
 from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution, with_masses
 from rigidfluid.taylor_hood.discretisation import Discretisation, dissipation, kinetic_energy, stress_power
@@ -67,7 +67,7 @@ def _measured(equations: Equations, solution: Solution, on_faces: FloatArray, li
     midway = 0.5 * (equations.mesh.geometry + matrix.points)
     begins = problem.inertia and step.derivative[2] == 0.0
     on_bodies = -surfaces.resultants(solution.reaction, at, step.pose.position)
-    faces = surfaces, problem.inert_density, at, velocity, equations.mesh_velocity
+    at_faces = FaceFlow(surfaces, problem.inert_density, at, velocity, equations.mesh_velocity)
     return Advance(
         fluid=_state(equations, solution),
         twist=_twist(solution, d),
@@ -75,9 +75,9 @@ def _measured(equations: Equations, solution: Solution, on_faces: FloatArray, li
         kinetic_energy=kinetic_energy(discretisation, matrix.points, velocity),
         dissipation=dissipation(discretisation, matrix.points, velocity),
         dissipation_midway=dissipation(discretisation, midway, mean),
-        boundary_power=face_power(*faces, on_faces, solution.reaction),
+        boundary_power=at_faces.power(on_faces, solution.reaction),
         link_force=link_force,
-        spurious_flux=spurious_flux(*faces),
+        spurious_flux=at_faces.spurious_flux(),
         grad_div=grad_div_dissipation(discretisation, matrix, velocity),
         source_power=_source_power(discretisation, matrix, velocity, step.time),
         stress_power=stress_power(discretisation, matrix.points, velocity, mean) if begins else None,

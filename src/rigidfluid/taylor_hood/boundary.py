@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.taylor_hood.face import Face
 from rigidfluid.taylor_hood.surfaces import Surfaces
 
 
@@ -23,43 +25,43 @@ def pressure_load(surfaces: Surfaces, node_points: FloatArray, time: float) -> F
     return load
 
 
-def face_power(
-    surfaces: Surfaces,
-    inert_density: float,
-    node_points: FloatArray,
-    velocity: FloatArray,
-    mesh_velocity: Callable[[], FloatArray],
-    pressure_load: FloatArray,
-    reaction: FloatArray,
-) -> float:
-    """Mechanical power into the fluid through the boundary: tractions times velocity, and kinetic energy carried in.
+@dataclass(frozen=True, eq=False)
+class FaceFlow:
+    """Flow at the faces: ``velocity`` u (nodes, d) at ``node_points`` (nodes, d).
 
     The normal n points into the fluid: what flows in is (u - w)·n, with the ``mesh_velocity`` w (nodes, d) of a face
-    that moves, which is asked for where there are such faces. With several processes the load and the ``reaction``
-    (nodes, d) at a node are the sums of what they have there.
+    that moves, which is asked for where there are such faces.
     """
-    held = surfaces.dirichlet_nodes
-    power = float(np.sum(reaction[held] * velocity[held]) + np.sum(pressure_load * velocity))
-    passed = [face for face in surfaces.faces if face.condition.passes]
-    if inert_density > 0.0 and passed:
-        relative = velocity - mesh_velocity()
-        for face in passed:
-            power += inert_density * face.energy_inflow(node_points, velocity, relative)
-    return float(surfaces.ranks.sum(power))
 
+    surfaces: Surfaces
+    inert_density: float
+    node_points: FloatArray
+    velocity: FloatArray
+    mesh_velocity: Callable[[], FloatArray]
 
-def spurious_flux(
-    surfaces: Surfaces,
-    inert_density: float,
-    node_points: FloatArray,
-    velocity: FloatArray,
-    mesh_velocity: Callable[[], FloatArray],
-) -> float:
-    """Kinetic energy that convection carries out through curved slip faces, per unit time: between their nodes u·n is
-    not zero. It gets less with finer cells there."""
-    crossed = [face for face in surfaces.faces if face.condition.slips and face.condition.normal is None]
-    flux = 0.0
-    if inert_density > 0.0 and crossed:
-        relative = velocity - mesh_velocity()
-        flux = -inert_density * sum(face.energy_inflow(node_points, velocity, relative) for face in crossed)
-    return float(surfaces.ranks.sum(flux))
+    def power(self, pressure_load: FloatArray, reaction: FloatArray) -> float:
+        """Mechanical power into the fluid through the boundary: tractions times velocity, and kinetic energy carried
+        in.
+
+        With several processes the load and the ``reaction`` (nodes, d) at a node are the sums of what they have there.
+        """
+        held = self.surfaces.dirichlet_nodes
+        power = float(np.sum(reaction[held] * self.velocity[held]) + np.sum(pressure_load * self.velocity))
+        for inflow in self._energy_inflows([face for face in self.surfaces.faces if face.condition.passes]):
+            power += self.inert_density * inflow
+        return float(self.surfaces.ranks.sum(power))
+
+    def spurious_flux(self) -> float:
+        """Kinetic energy that convection carries out through curved slip faces, per unit time: between their nodes u·n
+        is not zero. It gets less with finer cells there."""
+        faces = self.surfaces.faces
+        crossed = [face for face in faces if face.condition.slips and face.condition.normal is None]
+        carried = self._energy_inflows(crossed)
+        return float(self.surfaces.ranks.sum(-self.inert_density * sum(carried) if carried else 0.0))
+
+    def _energy_inflows(self, faces: list[Face]) -> list[float]:
+        """∫ ½|u|² (u - w)·n of each face; none in a fluid without inertia."""
+        if self.inert_density == 0.0 or not faces:
+            return []
+        relative = self.velocity - self.mesh_velocity()
+        return [face.energy_inflow(self.node_points, self.velocity, relative) for face in faces]

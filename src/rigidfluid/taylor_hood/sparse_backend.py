@@ -100,7 +100,8 @@ class SparseBackend(TaylorHoodBackend):
 
         self.forget()
         if memory:
-            discretisation = self._discretisation(mesh.at(memory["geometry"]), memory["controlled"].astype(bool)).inner
+            there = mesh.moved_to(memory["geometry"])
+            discretisation = self._discretisation(there, memory["controlled"].astype(bool)).inner
             assert isinstance(discretisation, SparseDiscretisation)
             discretisation.recall(memory)
 

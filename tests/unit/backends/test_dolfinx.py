@@ -1,4 +1,4 @@
-"""The DOLFINx backend beside scikit-fem's: two engines, one scheme, the same answer."""
+"""The DOLFINx backend compared with scikit-fem's: two engines, one scheme, the same answer."""
 
 import importlib.util
 import signal

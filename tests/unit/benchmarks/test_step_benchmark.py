@@ -1,4 +1,4 @@
-"""The benchmark of a step beside NGSolve's: its page, and that NGSolve's ways are ways to the same flow."""
+"""The benchmark of a step compared with NGSolve's: its page, and that NGSolve's ways are ways to the same flow."""
 
 import os
 import shutil

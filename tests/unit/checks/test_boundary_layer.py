@@ -89,7 +89,7 @@ def test_a_run_is_judged_by_its_highest_speed(cells: float, grades: list[str]) -
 
 @pytest.mark.parametrize(("size_body", "grade"), [(0.015, "warning"), (0.0075, "note")])
 def test_a_layer_beside_which_torques_jumped_is_a_warning(size_body: float, grade: str) -> None:
-    """With a layer of .012 beside cells of .015 a light disk's torque jumped eightfold, with half the cell by 12 %."""
+    """With a layer of .012 next to cells of .015 a light disk's torque jumped eightfold, with half the cell by 12 %."""
     scene = falling_disk()
     assert scene.fluid.viscosity is not None
     speed = np.array([0.25 * scene.fluid.viscosity / 0.012**2])  # the density is 1

@@ -94,7 +94,7 @@ def test_points_outside_a_wall_are_at_negative_distances(tmp_path: Path) -> None
 
 
 def test_round_ends_are_known_as_disks(tmp_path: Path) -> None:
-    """So that they can have a Poiseuille profile; and rectangles beside curved faces as rectangles."""
+    """So that they can have a Poiseuille profile; and rectangles next to curved faces as rectangles."""
     tube = drawn(bent_tube(), tmp_path)
     end = section(tube.pieces[tube.names.index("outflow")])
     assert isinstance(end, Disk)

@@ -1,4 +1,4 @@
-"""Predicted memory and time of factors, beside what was measured and what PARDISO counts here."""
+"""Predicted memory and time of factors, compared with what was measured and what PARDISO counts here."""
 
 import importlib.util
 import subprocess

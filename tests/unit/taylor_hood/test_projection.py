@@ -1,4 +1,4 @@
-"""Projections along velocities without divergence beside those by a step's own solver; and the matrices they need."""
+"""Projections along velocities without divergence against those by a step's own solver; and the matrices they need."""
 
 import numpy as np
 import pytest

@@ -102,7 +102,7 @@ def after_a_new_mesh(simulation, saved):
 
 @pytest.mark.parametrize("solver", ["lu", "schur"])
 def test_what_projections_leave_is_no_burst_of_pressure(solver, monkeypatch):
-    """Beside projections to 1e-12, in the worst case: the flow is still young, and the energy's scale at its limit."""
+    """Against projections to 1e-12, in the worst case: the flow is still young, and the energy's scale at its limit."""
     scene = falling_disk(body={"angular_velocity": 30.0, "velocity": [0.0, -4.0]}, fluid={"solver": solver}, **SHORT)
     simulation = Simulation(scene)
     simulation.step()

@@ -82,9 +82,7 @@ def contact_forces(problem: Problem, force: FloatArray, gap: FloatArray) -> tupl
         moved = problem.compliance @ step - lacking
         if np.all(np.abs(moved) <= _tolerance(problem)) and np.all(gap + moved > 0.0):
             return force + step, gap + moved
-        part = _open_part(gap, moved)
-        if not lacking.any():
-            part = _searched(problem, force, gap, step, moved, part)
+        part = _open_part(gap, moved) if lacking.any() else _searched(problem, force, gap, step, moved)
         lacking = (1.0 - part) * lacking
         force = force + part * step
         gap = gap + part * moved
@@ -124,15 +122,13 @@ def _open_part(gap: FloatArray, moved: FloatArray) -> float:
     return float(np.min((1.0 - _SHRINK) * gap[closing] / -moved[closing], initial=1.0))
 
 
-def _searched(
-    problem: Problem, force: FloatArray, gap: FloatArray, step: FloatArray, moved: FloatArray, part: float
-) -> float:
+def _searched(problem: Problem, force: FloatArray, gap: FloatArray, step: FloatArray, moved: FloatArray) -> float:
     """Part of a step at which the convex function no longer rises half as steeply as it falls at the start."""
 
     def slope(part: float) -> float:
         return float(moved @ (force + part * step - problem.law_force(gap + part * moved)[0]))
 
-    steepest = -slope(0.0)
+    part, steepest = _open_part(gap, moved), -slope(0.0)
     for _ in range(_HALVINGS):
         if slope(part) <= _FLATTER * steepest:
             break

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,16 +25,14 @@ class ExtrapolatedContacts:
         self._pose = pose
         self._round = np.isfinite(contacts.radius_a) & np.isfinite(contacts.radius_b) & ~contacts.at_wall
         turned_back = np.swapaxes(rotation_matrices(pose.orientation), -1, -2)
-        self._arm_a = _arms(contacts.body_a, contacts.point_a, pose, turned_back)
-        self._arm_b = _arms(contacts.body_b, contacts.point_b, pose, turned_back)
+        self._points_a = _points(contacts.body_a, contacts.point_a, contacts.radius_a, pose, turned_back)
+        self._points_b = _points(contacts.body_b, contacts.point_b, contacts.radius_b, pose, turned_back)
 
     def extrapolate(self, pose: Pose) -> Contacts:
         """Contacts when the bodies are at ``pose``, in the same order."""
         rotation = rotation_matrices(pose.orientation)
         old, normal = self._contacts, self._contacts.normal.copy()
-        ball_a = np.isfinite(old.radius_a)
-        point_a = _moved(old.body_a, self._arm_a, old.point_a, self._pose, pose, rotation, ball_a)
-        point_b = _moved(old.body_b, self._arm_b, old.point_b, self._pose, pose, rotation, np.isfinite(old.radius_b))
+        point_a, point_b = (each.moved(self._pose, pose, rotation) for each in (self._points_a, self._points_b))
         gap = np.sum((point_a - point_b) * normal, axis=1)
         point_b[old.at_wall] = point_a[old.at_wall] - gap[old.at_wall, None] * normal[old.at_wall]
         if self._round.any():
@@ -58,25 +57,30 @@ class ExtrapolatedContacts:
         gap[which] = distance - old.radius_a[which] - old.radius_b[which]
 
 
-def _arms(body: IntArray, point: FloatArray, pose: Pose, turned_back: FloatArray) -> FloatArray:
-    """Arm (m, d) from the centre of mass to the point in the body's frame; for walls the point itself [length]."""
-    count = len(pose.position)
+class _Points(NamedTuple):
+    """Points of contacts on their ``body`` (m,): the ``point`` (m, d) at the detection, its ``arm`` (m, d) from the
+    centre of mass in the body's frame, for walls the point itself [length], and whether it ``turns`` (m,) with it."""
+
+    body: IntArray
+    point: FloatArray
+    arm: FloatArray
+    turns: BoolArray
+
+    def moved(self, old: Pose, pose: Pose, rotation: FloatArray) -> FloatArray:
+        """Present positions (m, d) [length]."""
+        moved = self.arm.copy()
+        on_body = self.body < len(pose.position)
+        index, turning = self.body[on_body], self.turns[on_body, None]
+        turned = pose.position[index] + np.einsum("nij,nj->ni", rotation[index], self.arm[on_body])
+        shifted = self.point[on_body] + pose.position[index] - old.position[index]
+        moved[on_body] = np.where(turning, turned, shifted)
+        return moved
+
+
+def _points(body: IntArray, point: FloatArray, radius: FloatArray, pose: Pose, turned_back: FloatArray) -> _Points:
+    """Points on bodies of this ``radius`` (m,); that of a ball does not turn with it, as its nearest point does not."""
     arm = point.copy()
-    on_body = body < count
+    on_body = body < len(pose.position)
     index = body[on_body]
     arm[on_body] = np.einsum("nij,nj->ni", turned_back[index], point[on_body] - pose.position[index])
-    return arm
-
-
-def _moved(
-    body: IntArray, arm: FloatArray, point: FloatArray, old: Pose, pose: Pose, rotation: FloatArray, ball: BoolArray
-) -> FloatArray:
-    """Present positions (m, d) of the points; those of a ball do not turn with it, as its nearest point does not
-    [length]."""
-    moved = arm.copy()
-    on_body = body < len(pose.position)
-    index, turning = body[on_body], ~ball[on_body, None]
-    turned = pose.position[index] + np.einsum("nij,nj->ni", rotation[index], arm[on_body])
-    shifted = point[on_body] + pose.position[index] - old.position[index]
-    moved[on_body] = np.where(turning, turned, shifted)
-    return moved
+    return _Points(body, point, arm, ~np.isfinite(radius))

@@ -13,7 +13,7 @@ _EVERY = 256
 
 
 def is_due(count: int) -> bool:
-    """Whether parts are checked after so many steps, beside the start: after the same ones where a run is taken up
+    """Whether parts are checked after so many steps, besides the start: after the same ones where a run is taken up
     again."""
     return count in _EARLY or count % _EVERY == 0
 

@@ -74,8 +74,11 @@ def plan(
     approach = _approach(law, contacts, dynamics, reach)
     speed = approach.fastest + span * acceleration
     first = np.maximum(contacts.gap - law.range, 0.0) / np.maximum(speed, np.finfo(float).tiny)
-    creep = _creep(contacts, dynamics, reach, size) if quasi_steady else None
-    halvings = log2(max(size / _resolved(law, contacts, dynamics, approach, acceleration, creep), 1.0))
+    if quasi_steady:
+        push = _creep(contacts, dynamics, reach, size)
+    else:
+        push = _Push(relative_motion(contacts, dynamics).mass * acceleration, None)
+    halvings = log2(max(size / _resolved(law, contacts, dynamics, approach, push), 1.0))
     substep = size / 2.0 ** ceil(halvings)
     free_flight = min(float(first.min()), span)
     return Plan(free_flight if free_flight > substep else 0.0, substep)
@@ -145,41 +148,33 @@ def _tumbling_energy(contacts: Contacts, dynamics: BodyDynamics, velocity: Float
     return np.asarray((1.0 + _pair_values(reach.rotational_factor, contacts).max(axis=1)) * kinetic)
 
 
-class _Creep(NamedTuple):
-    """Contacts in a fluid without inertia: ``force`` (m,), the resultant in each of all but contacts [force];
-    ``rates`` (m, m), absolute rates of the gaps by forces that last for a step [speed/force]."""
+class _Push(NamedTuple):
+    """Resultant ``force`` (m,) in each contact of all but contacts [force]; ``rates`` (m, m), in a fluid without
+    inertia alone: absolute rates of the gaps by forces that last for a step [speed/force]."""
 
     force: FloatArray
-    rates: FloatArray
+    rates: FloatArray | None
 
 
-def _creep(contacts: Contacts, dynamics: BodyDynamics, reach: Reach, size: float) -> _Creep:
+def _creep(contacts: Contacts, dynamics: BodyDynamics, reach: Reach, size: float) -> _Push:
     rates = np.abs(size * delassus(contacts, dynamics, size).toarray())
     gained = size * _pair_values(dynamics.max_acceleration(size), contacts).sum(axis=1)
     wandering = 1.0 + _pair_values(reach.rotational_factor, contacts).max(axis=1)
-    return _Creep(gained * _reciprocal(rates.diagonal()), rates * wandering)
+    return _Push(gained * _reciprocal(rates.diagonal()), rates * wandering)
 
 
-def _resolved(
-    law: ForceLaw,
-    contacts: Contacts,
-    dynamics: BodyDynamics,
-    approach: _Approach,
-    acceleration: FloatArray,
-    creep: _Creep | None,
-) -> float:
+def _resolved(law: ForceLaw, contacts: Contacts, dynamics: BodyDynamics, approach: _Approach, push: _Push) -> float:
     """Substep 0.1/ω with ω² ≤ Σ k/m over all contacts of either body, k the greatest stiffness within reach [time].
 
-    The substep with ``creep`` is a tenth of the contacts' relaxation time, if that is longer: h k φ₁(λh) h/m ≤ 0.1
+    Without inertia of the fluid it is a tenth of the contacts' relaxation time, if that is longer: h k φ₁(λh) h/m ≤ 0.1
     then, with decay rates λ, and Verlet's method with exact decay is stable up to 2.
     """
     motion = relative_motion(contacts, dynamics)
-    force = motion.mass * acceleration if creep is None else creep.force
-    stiffness, damping = _reached(law, contacts, motion, approach, force)
+    stiffness, damping = _reached(law, contacts, motion, approach, push.force)
     inverse = approach.inverse
     swing = np.sqrt(_highest_sum(stiffness, contacts, inverse))
-    if creep is not None:
-        swing = min(swing, float((creep.rates @ stiffness).max()))
+    if push.rates is not None:
+        swing = min(swing, float((push.rates @ stiffness).max()))
     rate = max(swing, _highest_sum(damping, contacts, inverse))
     refuse_no_number("contacts", "stiffness or damping", rate, "contact.law")
     return RESOLUTION / rate if rate > 0 else np.inf

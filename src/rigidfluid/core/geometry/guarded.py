@@ -143,7 +143,7 @@ def told_of(part: Any, key: str, error: BaseException) -> RigidfluidError | Keyb
     An interrupt that comes within compiled code is an interrupt, though Python makes a SystemError of it.
     """
     if isinstance(error, SystemError) and isinstance(error.__cause__, KeyboardInterrupt):
-        return error.__cause__
+        return KeyboardInterrupt()
     subject = f"{named(part if isinstance(part, type) else type(part))}, {key}"
     if isinstance(error, Wrong):
         if error.shorter:

@@ -34,8 +34,8 @@ def made_size(points: FloatArray, fluid_domain: FluidDomain, sizes: Sizes) -> tu
     """Edge length of cells to be expected at points, min(h, eᵢ + 0.83 dᵢ) over the bodies i, (N,) [length].
 
     h is the `wanted_size`, its growth at most 0.4; eᵢ is the mean edge of the body's facets, and dᵢ its distance.
-    Curved walls count as bodies do. Beside it the distance to the nearest body, negative inside, infinite where it is
-    so far that it decides nothing, (N,) [length].
+    Curved walls count as bodies do. With it comes the distance to the nearest body, negative inside, infinite where
+    it is so far that it decides nothing, (N,) [length].
     """
     bodies, pose = fluid_domain.bodies, fluid_domain.pose
     sizes = replace(sizes, growth=min(sizes.growth, _MOST_GROWTH))

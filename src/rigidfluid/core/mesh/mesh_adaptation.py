@@ -110,7 +110,7 @@ class MeshUpdater:
                 f"at least {TANGLED}",
                 "If bodies are about to touch, strengthen the contact force; else shorten time.step.",
             )
-        return state.reference.mesh.at(geometry)
+        return state.reference.mesh.moved_to(geometry)
 
     def remesh_if_needed(self, state: State, pose: Pose) -> State:
         """The same state, on a new mesh if a step to ``pose`` asks for one; with a mark where none can be made."""

@@ -40,7 +40,7 @@ def smooth_fluid(mesh: Mesh) -> Mesh:
         before = worst_near(geometry)
         movable = movable[(before[movable] < GOOD_QUALITY) & (step[movable] >= shortest[movable])]
         if not len(movable):
-            return mesh.at(geometry)
+            return mesh.moved_to(geometry)
         moved = movable[share_no_cell(near.cells, movable, len(mesh.points))]
         worst = _worst_at_vertices(_with_cells_at(near, moved))
         start, best, reached = geometry[moved].copy(), before[moved] + LEAST_GAIN, geometry[moved].copy()

@@ -103,7 +103,7 @@ def rate(answer: Any, part: Any, time: float) -> None:
     refuse_other_rows(answer.velocity, (count, d), "velocity")
     refuse_other_rows(answer.angular_velocity, (count, 1 if d == 2 else 3), "angular velocity")
     if not part.driven and (answer.velocity.any() or answer.angular_velocity.any()):
-        raise Wrong("a rate of what is not driven", "`driven = True` beside `rate`")
+        raise Wrong("a rate of what is not driven", "`driven = True` with `rate`")
 
 
 def later(answer: Any, part: Any, time: float) -> None:

@@ -182,7 +182,7 @@ class Mesh:
         """All that says where the mesh is: the vertices, then the middles of curved edges, (N + K, d) [length]."""
         return self.points if self.curved is None else np.concatenate([self.points, self.curved.middles])
 
-    def at(self, geometry: FloatArray) -> Mesh:
+    def moved_to(self, geometry: FloatArray) -> Mesh:
         """The same cells elsewhere, at a ``geometry`` (N + K, d) [length]."""
         if self.curved is None:
             return replace(self, points=geometry)

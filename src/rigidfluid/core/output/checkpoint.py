@@ -120,7 +120,7 @@ def _staged(path: Path) -> Path:
 
 def _with_shared_cells(state: State) -> State:
     """A moved mesh has the very cells of its reference: backends know a topology by its array."""
-    return replace(state, mesh=state.reference.mesh.at(state.mesh.geometry))
+    return replace(state, mesh=state.reference.mesh.moved_to(state.mesh.geometry))
 
 
 def _store(group: h5py.Group, record: Any) -> None:

@@ -116,6 +116,10 @@ def remembered_interrupt(ranks: Ranks) -> Iterator[Callable[[], None]]:
     try:
         with _other_losses_told():
             yield ask
+    except SystemError as error:  # Python makes one of an interrupt within compiled code
+        if isinstance(error.__cause__, KeyboardInterrupt):
+            raise KeyboardInterrupt from error
+        raise
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

@@ -98,7 +98,7 @@ def checkpoint_for(backend: FluidBackend, out: Path) -> Checkpoint:
     own = ranks.scatter(pieces)
     reference = own.state.reference
     mesh = shared(reference.mesh, ranks)
-    state = replace(own.state, reference=replace(reference, mesh=mesh), mesh=mesh.at(own.state.mesh.geometry))
+    state = replace(own.state, reference=replace(reference, mesh=mesh), mesh=mesh.moved_to(own.state.mesh.geometry))
     return replace(own, state=state)
 
 
@@ -115,7 +115,7 @@ def _joined(backend: FluidBackend, parts: list[State]) -> State:
     first, meshes = parts[0], [_meshes(part) for part in parts]
     references, present = ([pair[i] for pair in meshes] for i in range(2))
     reference = joined(references)
-    mesh = reference.at(joined(present).geometry)
+    mesh = reference.moved_to(joined(present).geometry)
     fluid = backend.joined([part.fluid for part in parts], present, mesh)
     return replace(first, reference=replace(first.reference, mesh=reference), mesh=mesh, fluid=fluid)
 

@@ -55,7 +55,7 @@ def scene_errors(model: type[BaseModel], error: ValidationError, at: str) -> lis
 
 
 def _is_within(field: str, other: str) -> bool:
-    """Whether one of two fields is that of a value in the other, or both are the same."""
+    """Tell whether one of two fields is that of a value in the other, or both are the same."""
     return f"{field}.".startswith(f"{other}.") or f"{other}.".startswith(f"{field}.")
 
 
@@ -204,7 +204,7 @@ def _place(model: type[BaseModel], location: Location, at: str) -> _Place:
 
 
 def _has_any_key(annotation: Any) -> bool:
-    """Whether a value may be a table whose keys are free."""
+    """Tell whether a value may be a table whose keys are free."""
     kinds = map(get_origin, (annotation, *get_args(annotation)))
     return any(inspect.isclass(kind) and issubclass(kind, Mapping) for kind in kinds)
 

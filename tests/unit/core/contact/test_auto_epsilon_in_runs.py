@@ -27,7 +27,7 @@ def ball(height: float, velocity: float | None = None, **keys: Any) -> dict[str,
 
 
 def scene(law: str, dimension: int, gravity: float, *bodies: dict[str, Any], **contact: Any) -> Scene:
-    """Balls in a box without a fluid, in steps that are small beside the impact."""
+    """Balls in a box without a fluid, in steps that are small compared with the impact."""
     return scene_from_dict(
         dry_tables(
             *[_placed(body, dimension) for body in bodies],

@@ -128,7 +128,7 @@ AT_A_WALL = ({"position": [0.5, 0.15], "velocity": [0.5, -SPEED]},)
 @pytest.mark.parametrize("bodies", [PAIR, AT_A_WALL], ids=["pair", "wall"])
 @pytest.mark.parametrize(("law", "epsilon"), [("centre", 1e-6), ("normal", 1e-5), ("barrier", 1e-3)])
 def test_a_blow_keeps_its_energy_however_many_steps_it_lasts(law, epsilon, bodies):
-    """Each step plans its substeps anew; they must not change within the blow, or it costs a thousandth."""
+    """Each step plans its substeps again; they must not change within the blow, or it costs a thousandth."""
     lasted = []
     for step in 0.003 / np.sqrt(2.0) ** np.arange(8):
         history = rigidfluid.run(dry(*bodies, step=step, end=0.06, law=law, epsilon=epsilon))

@@ -61,7 +61,7 @@ def state(change: FloatArray, contact: FloatArray, link: FloatArray, applied: tu
 
 
 def test_the_load_that_is_expected_has_moved_the_bodies_in_the_step_before() -> None:
-    """M ΔU = (Φ + contacts + joints) Δt; what is applied anew is added."""
+    """M ΔU = (Φ + contacts + joints) Δt; the change of what is applied is added."""
     known, load, contact, link = model(), np.array([1.0, -2.0, 3.0]), random(1), random(2)
     pushed = (contact + link).ravel()[VELOCITIES]
     change = np.zeros((2, 3))

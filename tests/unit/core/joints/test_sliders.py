@@ -221,7 +221,7 @@ def test_a_damped_ball_stops_turning():
 
 
 def test_sliders_are_told_resumed_and_drawn(tmp_path):
-    """Beside a hinge: each has its own column, and a run goes on with the same bits."""
+    """With a hinge: each has its own column, and a run goes on with the same bits."""
     bodies = [body(2.0, 3.0, name="cart"), bar(2.28, 2.8, name="bar")]
     joints = [slider("cart", axis=[1.0, 0.0], drive=WAVE), hinge("bar", "cart", at=[2.0, 2.8], name="knee")]
     keys = {"gravity": [0.0, -10.0], "step": 0.01, "output": {"every": 0.05}}

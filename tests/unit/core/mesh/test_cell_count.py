@@ -1,4 +1,4 @@
-"""Expected cells and facets beside those of meshes that are made, and of scenes whose meshes take long."""
+"""Expected cells and facets, compared with those of meshes that are made, and of scenes whose meshes take long."""
 
 from __future__ import annotations
 

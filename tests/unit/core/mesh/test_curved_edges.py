@@ -70,7 +70,7 @@ def test_curved_edges_move_rigidly_with_their_body(around_an_ellipsoid) -> None:
     half = 0.05
     turn = np.array([0.1]) if len(pose.position[0]) == 2 else np.array([np.cos(half), 0.0, 0.0, np.sin(half)])
     there = Pose(pose.position + 0.03, turn[None])
-    moved = mesh.at(MeshMotion(mesh, FluidDomain([body], pose, box, ())).move(there))
+    moved = mesh.moved_to(MeshMotion(mesh, FluidDomain([body], pose, box, ())).move(there))
     cosine, sine = np.cos(0.1), np.sin(0.1)
     rotation = np.eye(len(pose.position[0]))
     rotation[:2, :2] = [[cosine, -sine], [sine, cosine]]

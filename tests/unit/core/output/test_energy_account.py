@@ -4,13 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from made_up_energy import PUT_IN, table
+from made_up_energy import PUT_IN, table, warned
 
-from rigidfluid.core.output.energy_account import energy_account, energy_warnings, per_cent
-
-
-def warned(energy):
-    return energy_warnings(energy, energy_account(energy))
+from rigidfluid.core.output.energy_account import energy_account, per_cent
 
 
 def test_a_balance_that_closes():

@@ -6,16 +6,12 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from made_up_energy import table
+from made_up_energy import table, warned
 
-from rigidfluid.core.output.energy_account import energy_account, energy_warnings
+from rigidfluid.core.output.energy_account import energy_account
 from rigidfluid.core.output.energy_flows import largest_growth
 
 ERROR = 0.3
-
-
-def warned(energy):
-    return energy_warnings(energy, energy_account(energy))
 
 
 def shares(energy):

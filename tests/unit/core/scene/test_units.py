@@ -171,7 +171,7 @@ def test_a_mesh_in_a_domain_of_facets_is_the_same(scale: float, tmp_path: Path) 
 
 
 def test_responses_of_turning_and_of_moving_may_have_any_sizes() -> None:
-    """1/(mass · length²) beside 1/mass, in metres of a body of a nanometre."""
+    """1/(mass · length²) next to 1/mass, in metres of a body of a nanometre."""
     arm = np.diag([1.0, 1.0, 1e9])
     inviscid = arm @ np.array([[2.0, 0.1, 0.4], [0.1, 2.0, 0.3], [0.4, 0.3, 4.0]]) @ arm
     model = reduced_model(np.arange(3), inviscid, inviscid / 3.0, 2.0, Evaluation(np.ones(3), np.ones(3)), shared=False)

@@ -110,7 +110,7 @@ def test_coefficients_of_a_towed_body_go_by_its_prescribed_speed(way: tuple[floa
 
 
 def tumbling(dimension: int) -> dict[str, Any]:
-    """An ellipsoid that spins about one axis of space beside a ball that does not; no fluid."""
+    """An ellipsoid that spins about one axis of space, and a ball that does not; no fluid."""
     still = [0.0] * dimension
     spin = [2.0] if dimension == 2 else [0.0, 0.0, 2.0]
     ellipsoid = {"type": "ellipsoid", "semi_axes": [0.3, *[0.1] * (dimension - 1)], "angular_velocity": spin}

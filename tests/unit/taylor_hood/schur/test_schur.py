@@ -1,4 +1,4 @@
-"""The block preconditioner: its parts beside what they approximate, its iterations, and the steps it gives."""
+"""The block preconditioner: its parts compared with what they approximate, its iterations, and the steps it gives."""
 
 import numpy as np
 import pytest
