@@ -18,11 +18,13 @@ from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.memory import told_memory
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FluidState, Pose, Twist, Wrench
+from rigidfluid.core.model.types import Fields, FluidState, Pose, Twist, Wrench
 from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.history import History
+from rigidfluid.core.output.point_sets import PointSet, body_points, contact_points
 from rigidfluid.core.output.records import StepCost, count_cells, joint_coordinates, records
+from rigidfluid.core.output.vtu import BODIES, CONTACTS
 from rigidfluid.core.output.writer import Writer, has_checkpoint
 from rigidfluid.core.run.caller_input import over_time, time_of, twist_row, wrench_row
 from rigidfluid.core.run.clock import Clock
@@ -374,15 +376,27 @@ class Simulation:
                 self._writer.extend(now)
 
     def _output(self) -> None:
-        """Write fields and a checkpoint; the backend is asked in any case, so that no result depends on writing."""
+        """Write fields, points and a checkpoint; the backend is asked in any case, so that no result depends on writing."""
         self._times = (*self._times, self.time)
         memory = self.system.backend.memory()
         if self._writer is None:
             return
         with self.watch("write"):
-            if count_cells(self.state.mesh):
-                self._writer.fields(self.system.backend.fields(self.state.fluid, self.state.mesh), self._times)
+            self._writer.output(self._fields(), self._points(), self._times)
             self._writer.checkpoint(self._checkpoint(self._writer, memory))
+
+    def _fields(self) -> Fields | None:
+        """Fields of the fluid, None without one."""
+        state = self.state
+        return self.system.backend.fields(state.fluid, state.mesh) if count_cells(state.mesh) else None
+
+    def _points(self) -> dict[str, PointSet]:
+        """Bodies and contacts of the present state."""
+        forces = contact_forces(self.system, self.stepper.scheme, self.state, self.time)
+        return {
+            BODIES: body_points(self.system, self.state),
+            CONTACTS: contact_points(self.system, self.state, forces),
+        }
 
     def _checkpoint(self, writer: Writer, memory: FluidState) -> Checkpoint:
         return Checkpoint(

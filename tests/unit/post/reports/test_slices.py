@@ -18,11 +18,11 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.facets import Facets
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import Fields
+from rigidfluid.core.output.cell_gradients import EDGES
 from rigidfluid.post.reports import report
 from rigidfluid.post.reports.bodies import cut, rotations
 from rigidfluid.post.reports.canvas import Canvas, Shell
 from rigidfluid.post.reports.coefficients import reference
-from rigidfluid.post.reports.flow import EDGES
 from rigidfluid.post.reports.narrowest import gap_middle
 from rigidfluid.post.reports.raster import Grid
 from rigidfluid.post.reports.results import Results, read_results
