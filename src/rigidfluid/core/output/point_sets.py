@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.model.state import State
@@ -19,18 +18,18 @@ _VERTEX, _LINE = 1, 3
 
 @dataclass(frozen=True)
 class PointSet:
-    """Points (N, d) [length] with ``arrays`` by name, (N,) or (N, components), in cells of one ``kind`` by VTK's number:
-    ``cells`` (M, b)."""
+    """Points (N, d) [length] with ``arrays`` by name, (N,) or (N, components), in ``cells`` (M, b) of one ``kind`` by
+    VTK's number."""
 
     points: FloatArray
-    arrays: dict[str, NDArray[np.float64 | np.int64]]
+    arrays: dict[str, FloatArray | IntArray]
     kind: int
     cells: IntArray
 
     def write(self, path: Path) -> None:
         """Write a VTU file; vectors of the plane have a third component of zero there."""
         d, arrays = self.points.shape[1], self.arrays.items()
-        spatial = {name: in_space(v) if v.ndim == 2 and v.shape[1] == d else v for name, v in arrays}
+        spatial = {name: in_space(v.astype(np.float64)) if v.ndim == 2 and v.shape[1] == d else v for name, v in arrays}
         write_grid(path, self.points, (self.kind, self.cells), spatial)
 
 
@@ -41,7 +40,7 @@ def body_points(system: System, state: State) -> PointSet:
     """
     pose, twist, fluid, contact = state.pose, state.twist, state.hydrodynamic_wrench, state.contact_wrench
     numbers = np.arange(len(system.bodies))
-    arrays: dict[str, NDArray[np.float64 | np.int64]] = {
+    arrays: dict[str, FloatArray | IntArray] = {
         "id": numbers,
         "bounding_radius": np.array([body.bounding_radius for body in system.bodies]),
         "angle" if system.dimension == 2 else "quaternion": pose.orientation,
@@ -64,7 +63,7 @@ def contact_points(system: System, state: State, forces: FloatArray) -> PointSet
     near, acting = state.contacts, system.acting(state.contacts)
     ends = np.arange(2 * len(acting)).reshape(-1, 2)
     force = forces[acting]
-    arrays: dict[str, NDArray[np.float64 | np.int64]] = {
+    arrays: dict[str, FloatArray | IntArray] = {
         "surface": np.stack([near.body_a[acting], near.body_b[acting]], axis=1).ravel(),
         "force": np.stack([force, -force], axis=1).reshape(-1, system.dimension),
         "gap": np.repeat(near.gap[acting], 2),
@@ -73,6 +72,6 @@ def contact_points(system: System, state: State, forces: FloatArray) -> PointSet
     return PointSet(points, arrays, _LINE, ends)
 
 
-def _flat(values: NDArray[np.float64 | np.int64]) -> NDArray[np.float64 | np.int64]:
+def _flat(values: FloatArray | IntArray) -> FloatArray | IntArray:
     """Values (N, 1) as (N,), all others as they are."""
     return values[:, 0] if values.ndim == 2 and values.shape[1] == 1 else values

@@ -376,7 +376,7 @@ class Simulation:
                 self._writer.extend(now)
 
     def _output(self) -> None:
-        """Write fields, points and a checkpoint; the backend is asked in any case, so that no result depends on writing."""
+        """Write fields, points and a checkpoint; the backend is asked in any case: no result depends on writing."""
         self._times = (*self._times, self.time)
         memory = self.system.backend.memory()
         if self._writer is None:

@@ -460,6 +460,18 @@ def test_system_in_3d() -> None:
     np.testing.assert_array_equal(front.point[2], 2.0)
 
 
+@pytest.mark.parametrize(
+    ("name", "other"), zip(NAMES, ("xmin", "xmax", "ymin", "ymax", "zmin", "zmax"), strict=True)
+)
+def test_faces_are_named_by_axis_too(name: str, other: str) -> None:
+    slips = [
+        [type(condition) is Slip for condition in model_of(scene_from_dict(in_3d(boundary=tables))).conditions]
+        for tables in ([{"on": on, "type": "slip"}] for on in (name, other))
+    ]
+    assert slips[0] == slips[1]
+    assert sum(slips[0]) == 1
+
+
 def test_angle_in_3d_is_refused() -> None:
     with pytest.raises(SceneError, match=r"body\.0\.angle.*quaternion"):
         scene_from_dict(in_3d(**{"body.0.angle": 1.0}))
