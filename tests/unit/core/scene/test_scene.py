@@ -26,6 +26,7 @@ from rigidfluid.core.case.system import build_system
 from rigidfluid.core.fluid.conditions import NoSlip, PrescribedPressure, PrescribedVelocity, Slip
 from rigidfluid.core.scene.overrides import override
 from rigidfluid.core.scene.scene import Scene
+from rigidfluid.domains.box import NAMES
 from rigidfluid.errors import PluginError, SceneError
 from rigidfluid.registry import Registry
 
@@ -461,7 +462,7 @@ def test_system_in_3d() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "other"), zip(NAMES, ("xmin", "xmax", "ymin", "ymax", "zmin", "zmax"), strict=True)
+    ("name", "other"), list(zip(NAMES, ("xmin", "xmax", "ymin", "ymax", "zmin", "zmax"), strict=True))
 )
 def test_faces_are_named_by_axis_too(name: str, other: str) -> None:
     slips = [

@@ -10,7 +10,7 @@ from matplotlib.colors import to_hex
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.types import Fields
-from rigidfluid.core.output.cell_gradients import EDGES, vorticity
+from rigidfluid.core.output.cell_gradients import EDGES, nodal_vorticity, vorticity
 from rigidfluid.post.reports.moment import Moment
 from rigidfluid.post.reports.pictures import flow_picture, streamline_picture, whole_mesh_picture
 from rigidfluid.post.reports.raster import Grid
@@ -55,6 +55,20 @@ def test_a_rigid_rotation_has_twice_its_spin_also_in_curved_cells() -> None:
     turning = np.cross(SPIN, space.points)
     found = vorticity(with_velocity(space, turning))
     np.testing.assert_allclose(found, np.broadcast_to(2.0 * SPIN, found.shape), rtol=1e-12)
+
+
+@pytest.mark.parametrize("at_once", [20_000, 5])
+def test_vorticity_at_a_node_is_the_mean_of_its_cells(monkeypatch: pytest.MonkeyPatch, at_once: int) -> None:
+    """Also if cells are taken in several parts."""
+    monkeypatch.setattr("rigidfluid.core.output.cell_gradients._AT_ONCE", at_once)
+    fields = square(3)
+    x, y = fields.points.T
+    fields = with_velocity(fields, np.stack([np.abs(y - 1 / 3), 0.0 * x], axis=1))
+    at_kink = np.isclose(y, 1 / 3)
+    sides = vorticity(fields)[..., 0]
+    expected = [np.mean(sides[fields.cells == node]) for node in range(len(fields.points))]
+    np.testing.assert_allclose(nodal_vorticity(fields)[:, 0], expected, atol=1e-13)
+    assert np.abs(nodal_vorticity(fields)[at_kink, 0]).max() < 0.5
 
 
 def test_poiseuille_flow_has_a_vorticity_linear_across_the_channel() -> None:

@@ -259,6 +259,7 @@ def test_meshio_reads_the_same_fields(tmp_path: Path, dimension: int) -> None:
     np.testing.assert_array_equal(read.cells_dict["triangle6" if dimension == 2 else "tetra10"], fields.cells)
     np.testing.assert_array_equal(read.point_data["velocity"][:, :dimension], fields.velocity)
     np.testing.assert_array_equal(read.point_data["pressure"], fields.pressure)
+    assert read.point_data["vorticity"].shape == (len(fields.points), *([] if dimension == 2 else [3]))
 
 
 def test_series_lists_the_output_times(fall: Path) -> None:
