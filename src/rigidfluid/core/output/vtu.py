@@ -22,7 +22,7 @@ from rigidfluid.core.output.disk import replace_text
 from rigidfluid.errors import OutputError
 
 FLUID, BODIES, CONTACTS = DATASETS = "fluid", "bodies", "contacts"
-"""What there is of each output time: the number of its part in a PVD file is its place here."""
+"""Names of the data sets of an output time; the number of its part in a PVD file is its place here."""
 
 _QUADRATIC = {6: 22, 10: 24}  # VTK's numbers for the quadratic triangle and tetrahedron
 _DIMENSIONS = {6: 2, 10: 3}

@@ -129,7 +129,9 @@ def read_results(folder: Path, *, motion_only: bool = False, model: Model | None
     count, links = len(system.bodies), len(_joint_names(system))
     wanted = {"bodies": len(moving(system))} | ({} if motion_only else {"energy": 1, "joints": links})
     tables = {
-        name: _by_state(folder, name, system, each, complete=complete) for name, each in wanted.items() if each > 0
+        name: _table_by_state(folder, name, system, each, complete=complete)
+        for name, each in wanted.items()
+        if each > 0
     }
     whole = min(len(table["step"]) for table in tables.values())
     if not complete:
@@ -181,10 +183,10 @@ def _summary(path: Path) -> dict[str, Any]:
     return dict(summary)
 
 
-def _by_state(folder: Path, name: str, system: System, count: int, *, complete: bool) -> dict[str, FloatArray]:
+def _table_by_state(folder: Path, name: str, system: System, count: int, *, complete: bool) -> dict[str, FloatArray]:
     """A table by column, each but the names (s, count): every row must be whole, and every state.
 
-    Of a table that need not be ``complete`` a last row or state that is not is dropped.
+    A last row or state that is not whole is dropped, if the table need not be ``complete``.
     """
     path, coordinates = table_path(folder, name), joint_coordinates(system)
     names = columns(system.dimension, coordinates)[name]
