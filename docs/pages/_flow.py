@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from page_tools import Run
 
+from rigidfluid.core.output.cell_gradients import vorticity
 from rigidfluid.core.output.vtu import read_pvd, read_vtu
-from rigidfluid.post.reports.flow import vorticity
 from rigidfluid.post.reports.plane import cell_by_cell
 from rigidfluid.post.reports.scale import SIGNED_COLOURMAP
 from rigidfluid.post.reports.style import BODY

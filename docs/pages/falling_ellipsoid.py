@@ -9,11 +9,11 @@ import numpy as np
 from matplotlib.figure import Figure
 from page_tools import Page, Run, Work, table
 
-from pages._slices import slices
+from pages._slices import colours, slices
 from rigidfluid.checks import check
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.post.reports.pictures import mesh_picture, vorticity_picture
+from rigidfluid.post.reports.pictures import flow_picture, mesh_picture
 
 SCENE, LONG = "falling_ellipsoid.toml", 1
 """The file, and which of the semi-axes is the long one."""
@@ -124,7 +124,8 @@ def page(work: Work) -> Page:
         )
     )
     shown = slices(shipped.run, SHOWN)
-    pictures = {"": curves(falls), "_vorticity": vorticity_picture(shown), "_mesh": mesh_picture(shown)}
+    turns, speed = (colours(shipped.run, quantity) for quantity in ("vorticity", "speed"))
+    pictures = {"": curves(falls), "_vorticity": flow_picture(shown, turns), "_mesh": mesh_picture(shown, speed)}
     return Page("An ellipsoid falls in a flat box", text, pictures)
 
 

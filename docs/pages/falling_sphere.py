@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from page_tools import Page, Run, Work, table
 from published import SETTLING_SPEED
 
-from pages._slices import slices
+from pages._slices import colours, slices
 from rigidfluid.checks import check
-from rigidfluid.post.reports.pictures import speed_picture
+from rigidfluid.post.reports.pictures import flow_picture
 
 SCENE = "falling_sphere.toml"
 COARSE = ["mesh.size_body=0.3", "time.step=0.02"]
@@ -97,7 +97,8 @@ def page(work: Work) -> Page:
         highest=about_highest(falls["coarse"], falls["shipped"]),
         floor=about_floor(*falls.values()),
     )
-    pictures = {"": curves(falls), "_speed": speed_picture(slices(falls["shipped"].run, SHOWN))}
+    shipped = falls["shipped"].run
+    pictures = {"": curves(falls), "_speed": flow_picture(slices(shipped, SHOWN), colours(shipped, "speed"))}
     return Page("A sphere falls in a closed box", text, pictures)
 
 

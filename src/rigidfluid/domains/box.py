@@ -24,7 +24,8 @@ NAMES = ("left", "right", "bottom", "top", "back", "front")
 class BoxOptions(PartOptions):
     """Keys of the ``[domain]`` table with type ``box``: ``lower`` and ``upper``, its corners [length].
 
-    Its surfaces are ``left`` and ``right`` along x, ``bottom`` and ``top`` along y, ``back`` and ``front`` along z.
+    Its surfaces are ``left`` and ``right`` along x, ``bottom`` and ``top`` along y, ``back`` and ``front`` along z;
+    ``xmin`` and ``xmax``, ``ymin`` and ``ymax``, ``zmin`` and ``zmax`` in a ``[[boundary]]`` table are the same ones.
     """
 
     lower: tuple[float, ...] = Field(description="Corner of the box with the smallest coordinates [length]")
@@ -124,6 +125,7 @@ class Box(Domain):
         normal[axis] = 1.0 - 2.0 * side
         return Piece(
             name=NAMES[2 * axis + side],
+            other_name="xyz"[axis] + ("min", "max")[side],
             shape=Plane((self._lower, self._upper)[side], normal, (lower, upper)),
             area=float(np.prod(np.delete(self.size, axis))),
             coordinates=_FaceCoordinates(self._lower, self._upper, axis),

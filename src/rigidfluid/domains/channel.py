@@ -21,7 +21,7 @@ class ChannelOptions(BoxOptions):
     ``[[domain.obstacle]]`` a body of any type that stays where it is, with a surface of its own.
 
     The faces of the box are called ``left`` and ``right`` along x, ``bottom`` and ``top`` along y, ``back`` and
-    ``front`` along z.
+    ``front`` along z, or, in a ``[[boundary]]`` table, ``xmin``, ``xmax``, ``ymin``, ``ymax``, ``zmin`` and ``zmax``.
     """
 
     obstacle: tuple[NestedBodyTable, ...] = Field(

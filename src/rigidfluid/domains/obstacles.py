@@ -80,8 +80,9 @@ class Obstacles:
         return shape
 
     def _refuse_taken_names(self) -> None:
+        others = [piece.other_name for piece in self._around.pieces if piece.other_name]
         for number, name in enumerate(self._placed):
-            if name in (taken := (ALL, *self._around.names)):
+            if name in (taken := (ALL, *self._around.names, *others)):
                 allowed = f"a name other than {', '.join(taken)}"
                 raise SceneError(f"{self._at}.{number}.name", repr(name), allowed, "Rename it.")
 

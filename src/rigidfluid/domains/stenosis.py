@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -58,7 +59,8 @@ class Stenosis(Domain):
     def pieces(self) -> tuple[Piece, ...]:
         """The sides of the rectangle, of which the bumps take a part of bottom and top, then the bumps."""
         left, right, *walls = self._box.pieces
-        flat = [Piece(wall.name, wall.shape, wall.area - 2.0 * self._bumps[wall.name].half_width) for wall in walls]
+        narrower = {wall.name: wall.area - 2.0 * self._bumps[wall.name].half_width for wall in walls}
+        flat = [replace(wall, area=narrower[wall.name], coordinates=None) for wall in walls]
         bumps = [Piece(f"{name}_bump", arc, arc.length) for name, arc in self._bumps.items()]
         return (left, right, *flat, *bumps)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import sys
+import xml.etree.ElementTree as ET
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -72,6 +73,19 @@ def test_fields_of_an_output_are_those_of_the_simulation_then(dimension: int, tm
         np.testing.assert_allclose(read.pressure, fields.pressure, rtol=1e-6, atol=1e-6)
     assert results.fields().time == 0.02
     assert np.abs(results.fields().velocity).max() > 0.1
+
+
+def test_fields_are_those_of_the_fluid_of_a_time_that_has_bodies_and_contacts_too(tmp_path: Path) -> None:
+    near = DISK | {"position": [0.5, 0.105], "velocity": [0.0, 0.0]}
+    contact = {"law": "normal", "range": 0.02, "epsilon": 1e-4}
+    rigidfluid.run(scene_from_dict(wet_tables(near, end=0.01, contact=contact, output={"every": 0.01})), tmp_path)
+    listed = [entry.attrib["name"] for entry in ET.parse(tmp_path / "fields.pvd").iter("DataSet")]
+    assert listed == 2 * ["fluid", "bodies", "contacts"]
+    results = load_results(tmp_path)
+    assert len(results.contacts["gap"]) > 0
+    assert results.times.tolist() == [0.0, 0.01]
+    for time in results.times:
+        assert results.fields(time).cells.shape[1] == 6
 
 
 def test_a_run_that_goes_on_has_whole_states_alone(tmp_path: Path) -> None:

@@ -27,7 +27,7 @@ def check_boundary_tables(tables: Sequence[BoundaryTable], domain: Domain, end: 
 
 def _check_on(domain: Domain, table: BoundaryTable, at: str) -> None:
     allowed = ("all", *domain.names)
-    if table.on not in allowed:
+    if table.on not in (*allowed, *(piece.other_name for piece in domain.pieces)):
         raise SceneError(f"{at}.on", repr(table.on), ", ".join(allowed), "Name a surface of the domain.")
 
 

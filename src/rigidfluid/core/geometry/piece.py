@@ -16,9 +16,11 @@ class Piece:
     ``shape``: the surface it lies on; of a flat piece all of its plane, if that does not go on inside. ``area`` of the
     piece [length^(d-1)]. ``coordinates``: from points (N, d) of the piece to its own coordinates (N, d-1), each from 0
     to 1 and with equal areas for equal parts; profiles are given in them, and a piece without them has none.
+    ``other_name``: by which tables of a scene may name it too, None if there is none.
     """
 
     name: str
     shape: Surface
     area: float
     coordinates: Callable[[FloatArray], FloatArray] | None = None
+    other_name: str | None = None

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.curl import curl
 from rigidfluid.core.mesh.distribution import whole
 from rigidfluid.core.mesh.location import CellFinder
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
@@ -46,9 +47,7 @@ class Flow(ABC):
 
     def vorticity(self, points: FloatArray) -> FloatArray:
         """Vorticity ∇ × u, (m, k), in 2D its one component, at ``points`` (m, d) [1/time]."""
-        slopes = self.gradient(points)
-        pairs = ((1, 0),) if points.shape[1] == 2 else ((2, 1), (0, 2), (1, 0))
-        return np.stack([slopes[:, i, j] - slopes[:, j, i] for i, j in pairs], axis=1)
+        return curl(self.gradient(points))
 
 
 class AtRest(Flow):

@@ -17,7 +17,7 @@ from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw
 from rigidfluid.core.model.joints import Joints, NoJoints
 from rigidfluid.core.model.motions import Motions
-from rigidfluid.core.model.types import Loads, Pose, Twist
+from rigidfluid.core.model.types import Contacts, Loads, Pose, Twist
 from rigidfluid.core.model.window import Window
 
 
@@ -95,6 +95,10 @@ class System:
     def law_range(self) -> float:
         """Gap below which bodies may repel, zero without a law [length]."""
         return self.law.range if self.law else 0.0
+
+    def acting(self, contacts: Contacts) -> IntArray:
+        """Numbers of those of m contacts in which a law acts, within its range."""
+        return np.flatnonzero(contacts.gap <= self.law.range) if self.law else np.zeros(0, dtype=np.int64)
 
     @cached_property
     def detection(self) -> Detection:

@@ -10,7 +10,7 @@ import numpy as np
 
 from rigidfluid.core.model.types import Fields
 from rigidfluid.core.output.optional_package import optional_package
-from rigidfluid.core.output.vtu import QUADRATIC, in_space
+from rigidfluid.core.output.vtu import QUADRATIC, in_space, nodal_arrays
 from rigidfluid.described import Described
 
 
@@ -40,7 +40,7 @@ class FluidFields(Described, Fields):
         return cls(**{one.name: getattr(found, one.name) for one in fields(found)}, time=time)
 
     def grid(self) -> Any:
-        """Grid of PyVista with ``velocity``, in 2D too of three components, and ``pressure`` at its points.
+        """Grid of PyVista with ``velocity`` of three components, ``pressure`` and ``vorticity`` at its points.
 
         Returns
         -------
@@ -54,8 +54,7 @@ class FluidFields(Described, Fields):
         """
         pyvista = optional_package("pyvista", "vtk")
         grid = pyvista.UnstructuredGrid({QUADRATIC[self.cells.shape[1]]: self.cells}, in_space(self.points))
-        grid.point_data["velocity"] = in_space(self.velocity)
-        grid.point_data["pressure"] = self.pressure
+        grid.point_data.update(nodal_arrays(self))
         return grid
 
     def _facts(self) -> Mapping[str, object]:

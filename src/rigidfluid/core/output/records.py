@@ -106,7 +106,7 @@ def _numbers(pose: Pose, twist: Twist, hydrodynamic: Wrench, contact: Wrench, ga
 
 def _contact_rows(system: System, state: State, stamp: Row, forces: FloatArray) -> Iterator[Row]:
     near = state.contacts
-    for i in np.flatnonzero(near.gap <= system.law.range) if system.law else ():
+    for i in system.acting(near):
         names = (system.surfaces[near.body_a[i]], system.surfaces[near.body_b[i]])
         vectors = np.concatenate([near.point_a[i], near.point_b[i], near.normal[i]]).tolist()
         yield (*stamp, *names, *vectors, float(near.gap[i]), *forces[i].tolist())

@@ -37,11 +37,18 @@ class Files:
 
 FILES = (
     *(Files(f"`{name}.csv`", rf"{name}\.csv", "each step", content) for name, content in TABLES.items()),
+    Files("`fields.pvd`", r"fields\.pvd(\.part)?", "each `output.every`", "the list of all in `fields/`, for ParaView"),
     Files(
-        "`fields.pvd`, `fields/*.vtu`",
-        r"fields\.pvd(\.part)?|fields/\d{6,}(\.\d+)?\.p?vtu",
+        "`fields/000000.vtu`, …",
+        r"fields/\d{6,}(\.\d+)?\.p?vtu",
         "each `output.every`",
-        "velocity and pressure; not without a fluid",
+        "velocity, pressure and vorticity; not without a fluid",
+    ),
+    Files(
+        "`fields/000000.bodies.vtu`, `fields/000000.contacts.vtu`, …",
+        r"fields/\d{6,}\.(bodies|contacts)\.vtu",
+        "each `output.every`",
+        "bodies with twists and forces; contacts with their forces",
     ),
     Files("`state.h5`", r"state(\.\d+)?\.h5(\.part)?", "each `output.every`", "checkpoint for `--resume`"),
     Files("`summary.json`", r"summary\.json(\.part)?", "at the end", "the figures that matter, and what they cost"),

@@ -1,4 +1,4 @@
-"""Fields for ParaView: one VTU file per output time on the mesh of that time, and a PVD file that lists them.
+"""Fields and points for ParaView: VTU files of each output time, and a PVD file that lists them.
 
 If ranks share the mesh, each writes a VTU file of its cells, and a PVTU file lists those of one time.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import base64
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -15,9 +15,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.model.types import Fields
+from rigidfluid.core.output.cell_gradients import nodal_vorticity
 from rigidfluid.core.output.disk import replace_text
 from rigidfluid.errors import OutputError
+
+FLUID, BODIES, CONTACTS = DATASETS = "fluid", "bodies", "contacts"
+"""Names of the data sets of an output time; the number of its part in a PVD file is its place here."""
 
 QUADRATIC = {6: 22, 10: 24}  # VTK's numbers for the quadratic triangle and tetrahedron
 _DIMENSIONS = {6: 2, 10: 3}
@@ -26,27 +31,46 @@ _HEADER = 8  # bytes that say how long an array is
 
 
 def write_vtu(path: Path, fields: Fields) -> None:
-    """Write quadratic cells with ``velocity`` (3 components) and ``pressure`` at their nodes."""
-    nodes, cells = len(fields.points), len(fields.cells)
+    """Write quadratic cells with `nodal_arrays` of their nodes."""
+    single = {name: values.astype("<f4") for name, values in nodal_arrays(fields).items()}
+    write_grid(path, fields.points, (QUADRATIC[fields.cells.shape[1]], fields.cells), single)
+
+
+def nodal_arrays(fields: Fields) -> dict[str, FloatArray]:
+    """Arrays at the nodes as ParaView takes them: ``velocity`` (N, 3), ``pressure`` (N,) and ``vorticity``, (N,) in 2D
+    and (N, 3) in 3D."""
+    return {
+        "velocity": in_space(fields.velocity),
+        "pressure": fields.pressure,
+        "vorticity": np.squeeze(nodal_vorticity(fields), axis=1 if fields.points.shape[1] == 2 else ()),
+    }
+
+
+def write_grid(
+    path: Path, points: FloatArray, cells: tuple[int, IntArray], arrays: Mapping[str, NDArray[np.generic]]
+) -> None:
+    """Write ``points`` (N, d) with ``arrays`` by name, (N,) or (N, components), and ``cells``, all of one kind: VTK's
+    number of it, and their points (M, b)."""
+    kind, corners = cells
+    count, width = corners.shape
     root = ET.Element(
         "VTKFile", type="UnstructuredGrid", version="1.0", byte_order="LittleEndian", header_type="UInt64"
     )
     piece = ET.SubElement(
-        ET.SubElement(root, "UnstructuredGrid"), "Piece", NumberOfPoints=str(nodes), NumberOfCells=str(cells)
+        ET.SubElement(root, "UnstructuredGrid"), "Piece", NumberOfPoints=str(len(points)), NumberOfCells=str(count)
     )
-    data_array(ET.SubElement(piece, "Points"), "points", in_space(fields.points).astype("<f8"))
+    data_array(ET.SubElement(piece, "Points"), "points", in_space(points).astype("<f8"))
     topology = ET.SubElement(piece, "Cells")
-    width = fields.cells.shape[1]
-    data_array(topology, "connectivity", fields.cells.astype("<i8").ravel())
-    data_array(topology, "offsets", np.arange(width, width * cells + 1, width, dtype="<i8"))
-    data_array(topology, "types", np.full(cells, QUADRATIC[width], dtype="u1"))
-    data = ET.SubElement(piece, "PointData", Vectors="velocity", Scalars="pressure")
-    data_array(data, "velocity", in_space(fields.velocity).astype("<f4"))
-    data_array(data, "pressure", fields.pressure.astype("<f4"))
+    data_array(topology, "connectivity", corners.astype("<i8").ravel())
+    data_array(topology, "offsets", np.arange(width, width * count + 1, width, dtype="<i8"))
+    data_array(topology, "types", np.full(count, kind, dtype="u1"))
+    data = ET.SubElement(piece, "PointData")
+    for name, values in arrays.items():
+        data_array(data, name, values)
     ET.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
 
 
-def write_pvtu(path: Path, pieces: Sequence[str]) -> None:
+def write_pvtu(path: Path, pieces: Sequence[str], dimension: int) -> None:
     """List the VTU files of one time, their names relative to this one's folder."""
     root = ET.Element(
         "VTKFile", type="PUnstructuredGrid", version="1.0", byte_order="LittleEndian", header_type="UInt64"
@@ -55,19 +79,22 @@ def write_pvtu(path: Path, pieces: Sequence[str]) -> None:
     points = ET.SubElement(grid, "PPoints")
     ET.SubElement(points, "PDataArray", type="Float64", Name="points", NumberOfComponents="3")
     data = ET.SubElement(grid, "PPointData", Vectors="velocity", Scalars="pressure")
-    ET.SubElement(data, "PDataArray", type="Float32", Name="velocity", NumberOfComponents="3")
-    ET.SubElement(data, "PDataArray", type="Float32", Name="pressure")
+    for name, components in (("velocity", 3), ("pressure", 1), ("vorticity", 1 if dimension == 2 else 3)):
+        ET.SubElement(data, "PDataArray", type="Float32", Name=name, NumberOfComponents=str(components))
     for piece in pieces:
         ET.SubElement(grid, "Piece", Source=piece)
     ET.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
 
 
-def write_pvd(path: Path, times: Sequence[float], files: Sequence[str]) -> None:
-    """List VTU or PVTU files with their times; ParaView opens them as one series, the mesh changing in time."""
+def write_pvd(path: Path, times: Sequence[float], series: Sequence[Mapping[str, str]]) -> None:
+    """List the files of each time by what is in them, one of DATASETS; ParaView opens them as one series of blocks of
+    these names, the mesh changing in time."""
     root = ET.Element("VTKFile", type="Collection", version="1.0", byte_order="LittleEndian")
     collection = ET.SubElement(root, "Collection")
-    for time, file in zip(times, files, strict=True):
-        ET.SubElement(collection, "DataSet", timestep=repr(time), part="0", file=file)
+    for time, files in zip(times, series, strict=True):
+        for name, file in files.items():
+            part = str(DATASETS.index(name))
+            ET.SubElement(collection, "DataSet", timestep=repr(time), part=part, name=name, file=file)
     replace_text(path, ET.tostring(root, encoding="utf-8", xml_declaration=True).decode())
 
 
@@ -94,10 +121,12 @@ def read_vtu(path: Path) -> Fields:
         )
 
 
-def read_pvd(path: Path) -> tuple[tuple[float, Path], ...]:
-    """Times and files of a series, in order; raises OutputError where the list is missing or cannot be read."""
+def read_pvd(path: Path, name: str = FLUID) -> tuple[tuple[float, Path], ...]:
+    """Times and files of one of DATASETS in a series, in order; raises OutputError where the list is missing or cannot
+    be read."""
     with _reading(path):
-        sets = list(ET.parse(path).iter("DataSet"))
+        part = str(DATASETS.index(name))
+        sets = [entry for entry in ET.parse(path).iter("DataSet") if entry.attrib["part"] == part]
         return tuple((float(entry.attrib["timestep"]), path.parent / entry.attrib["file"]) for entry in sets)
 
 

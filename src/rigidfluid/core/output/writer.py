@@ -1,4 +1,4 @@
-"""Puts a run on disk as it goes: tables each step, fields and a checkpoint each output, the summary at the end.
+"""Puts a run on disk as it goes: tables each step, fields, points and a checkpoint each output, the summary at the end.
 
 Ranks that share a run write each its part of the fields and its checkpoint, and the root all that is there once.
 """
@@ -24,11 +24,12 @@ from rigidfluid.core.output.checkpoint import (
     stage_checkpoint,
 )
 from rigidfluid.core.output.disk import replace_text, writing
+from rigidfluid.core.output.point_sets import PointSet
 from rigidfluid.core.output.records import Records, columns
 from rigidfluid.core.output.results_folder import clear, take_folder
 from rigidfluid.core.output.run_files import RUN
 from rigidfluid.core.output.tables import Prefix, Table, table_path
-from rigidfluid.core.output.vtu import write_pvd, write_pvtu, write_vtu
+from rigidfluid.core.output.vtu import DATASETS, FLUID, write_pvd, write_pvtu, write_vtu
 from rigidfluid.errors import OutputError
 
 CHECKPOINT, SUMMARY, SERIES, FIELDS = "state.h5", "summary.json", "fields.pvd", "fields"
@@ -53,7 +54,7 @@ class Writer:
         self.out, self.closed, self._ranks = out, False, ranks
         self._tables: dict[str, Table] = {}
         self._mark: TextIO | None = None
-        self._series: list[str] = []
+        self._series: list[dict[str, str]] = []
         with ExitStack() as undo:
             undo.callback(self.close)
             self._start(columns(dimension, coordinates), resumed)
@@ -70,6 +71,8 @@ class Writer:
             with self._writing_once(path) as is_mine:
                 if is_mine:
                     self._tables[name] = Table(path, names, kept.get(name))
+        if resumed is not None:
+            self._write_series(resumed.times)
 
     @property
     def tables(self) -> dict[str, Prefix]:
@@ -83,22 +86,36 @@ class Writer:
                 with writing(table_path(self.out, name)):
                     table.extend(records[name])
 
-    def fields(self, fields: Fields, times: tuple[float, ...]) -> None:
-        """Write the fields of the last of ``times``, and the series of all of them."""
-        stem, pieces = f"{len(times) - 1:06d}", []
-        if self._ranks.size == 1:
-            name = own = f"{FIELDS}/{stem}.vtu"
-        else:
-            pieces = [f"{stem}.{rank}.vtu" for rank in range(self._ranks.size)]
-            name, own = f"{FIELDS}/{stem}.pvtu", f"{FIELDS}/{pieces[self._ranks.rank]}"
-        with self._ranks.raise_on_all(), writing(self.out / own):
+    def output(self, fields: Fields | None, points: Mapping[str, PointSet], times: tuple[float, ...]) -> None:
+        """Write what there is at the last of ``times``, fields if there are some and ``points`` by name, and the series
+        of all of them."""
+        stem = f"{FIELDS}/{len(times) - 1:06d}"
+        files = {} if fields is None else {FLUID: self._write_fields(stem, fields)}
+        for name, some in points.items():
+            files[name] = f"{stem}.{name}.vtu"
+            with self._writing_once(self.out / files[name]) as is_mine:
+                if is_mine:
+                    some.write(self.out / files[name])
+        self._series.append(files)
+        self._write_series(times)
+
+    def _write_fields(self, stem: str, fields: Fields) -> str:
+        """Write the fields of this rank, and return the file in which there are those of all."""
+        ranks, whole = self._ranks, f"{stem}.vtu" if self._ranks.size == 1 else f"{stem}.pvtu"
+        pieces = [f"{stem}.{rank}.vtu" for rank in range(ranks.size)] if ranks.size > 1 else []
+        own = pieces[ranks.rank] if pieces else whole
+        with ranks.raise_on_all(), writing(self.out / own):
             write_vtu(self.out / own, fields)
-        self._series.append(name)
-        with self._writing_once(self.out / name) as is_mine:
+        with self._writing_once(self.out / whole) as is_mine:
             if is_mine and pieces:
-                write_pvtu(self.out / name, pieces)
+                names = [Path(piece).name for piece in pieces]
+                write_pvtu(self.out / whole, names, fields.points.shape[1])
             elif is_mine:
-                (self.out / f"{FIELDS}/{stem}.pvtu").unlink(missing_ok=True)  # of several ranks that were killed
+                (self.out / f"{stem}.pvtu").unlink(missing_ok=True)  # of several ranks that were killed
+        return whole
+
+    def _write_series(self, times: Sequence[float]) -> None:
+        with self._writing_once(self.out / SERIES) as is_mine:
             if is_mine:
                 write_pvd(self.out / SERIES, times, self._series)
 
@@ -126,7 +143,7 @@ class Writer:
 
     @property
     def files(self) -> list[str]:
-        """The files of a finished run; those with fields are listed in the series."""
+        """The files of a finished run; those of output times are listed in the series."""
         checkpoints = [checkpoint_name(rank) for rank in range(self._ranks.size)]
         names = [*(f"{name}.csv" for name in self._tables), SERIES, *checkpoints]
         present = [str(self.out / name) for name in names if (self.out / name).exists()]
@@ -216,7 +233,14 @@ def _checkpoints(out: Path) -> list[Path]:
     return [out / CHECKPOINT, *(others[rank] for rank in sorted(others))]
 
 
-def _series(out: Path, count: int) -> list[str]:
-    """The files of the first ``count`` fields of a run, from its folder on; several ranks have listed theirs."""
-    names = (f"{FIELDS}/{number:06d}" for number in range(count))
-    return [f"{name}.{'pvtu' if (out / f'{name}.pvtu').exists() else 'vtu'}" for name in names]
+def _series(out: Path, count: int) -> list[dict[str, str]]:
+    """The files of the first ``count`` output times of a run, as far as they are in its folder."""
+    return [_present(out, f"{FIELDS}/{number:06d}") for number in range(count)]
+
+
+def _present(out: Path, stem: str) -> dict[str, str]:
+    """The files of one output time by what is in them; several ranks have listed their fields."""
+    listed = f"{stem}.pvtu"
+    files = {FLUID: listed if (out / listed).exists() else f"{stem}.vtu"}
+    files |= {name: f"{stem}.{name}.vtu" for name in DATASETS if name != FLUID}
+    return {name: file for name, file in files.items() if (out / file).exists()}

@@ -25,7 +25,8 @@ from rigidfluid.registry import FLUID_BACKEND, Registry
 def earlier_of(
     model: Model, out: Path | None, backend: FluidBackend, clock: Clock, files: Mapping[str, str]
 ) -> Checkpoint:
-    """Read the checkpoint to resume; its scene must be this one, but for the end of time and a backend of one format.
+    """Read the checkpoint to resume; its scene must be this one, but for names of units, the end of time and a backend
+    of one format.
 
     Raises OutputError where it is not, a file that the scene names has another digest than it has in ``files``, or the
     run is past the clock's end.
@@ -35,6 +36,7 @@ def earlier_of(
     checkpoint = checkpoint_for(backend, out)
     stored, given = tables_now(json.loads(checkpoint.scene)), dict(model.document)
     stored["time"]["end"] = given["time"]["end"]
+    stored["scene"], given["scene"] = (tables["scene"] | {"units": None} for tables in (stored, given))
     if _is_of_another(backend, stored["fluid"]["backend"]):
         stored["fluid"], given["fluid"] = (_common_keys(tables["fluid"]) for tables in (stored, given))
         checkpoint = replace(checkpoint, memory={})
@@ -43,7 +45,7 @@ def earlier_of(
         raise OutputError(
             str(out),
             f"a run of another scene (other: {', '.join(changed)})",
-            "a run of the same scene; only time.end may differ, and the backend among those of P2–P1 elements",
+            "a run of the same scene; only time.end, names of units, and the backend among those of P2–P1 may differ",
             "Give the same scene and the same --set, or run without --resume.",
         )
     _refuse_changed_files(checkpoint, files)

@@ -23,7 +23,9 @@ from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.fluid_fields import FluidFields
 from rigidfluid.core.output.history import History
+from rigidfluid.core.output.point_sets import PointSet, body_points, contact_points
 from rigidfluid.core.output.records import StepCost, count_cells, joint_coordinates, records
+from rigidfluid.core.output.vtu import BODIES, CONTACTS
 from rigidfluid.core.output.writer import Writer, has_checkpoint
 from rigidfluid.core.run.caller_input import over_time, time_of, twist_row, wrench_row
 from rigidfluid.core.run.clock import Clock
@@ -406,15 +408,23 @@ class Simulation(Described):
                 self._writer.extend(now)
 
     def _output(self) -> None:
-        """Write fields and a checkpoint; the backend is asked in any case, so that no result depends on writing."""
+        """Write fields, points and a checkpoint; the backend is asked in any case: no result depends on writing."""
         self._times = (*self._times, self.time)
         memory = self.system.backend.memory()
         if self._writer is None:
             return
         with self.watch("write"):
-            if count_cells(self.state.mesh):
-                self._writer.fields(self.fields(), self._times)
+            fields = self.fields() if count_cells(self.state.mesh) else None
+            self._writer.output(fields, self._points(), self._times)
             self._writer.checkpoint(self._checkpoint(self._writer, memory))
+
+    def _points(self) -> dict[str, PointSet]:
+        """Bodies and contacts of the present state."""
+        forces = contact_forces(self.system, self.stepper.scheme, self.state, self.time)
+        return {
+            BODIES: body_points(self.system, self.state),
+            CONTACTS: contact_points(self.system, self.state, forces),
+        }
 
     def _checkpoint(self, writer: Writer, memory: FluidState) -> Checkpoint:
         return Checkpoint(

@@ -76,12 +76,26 @@ class _OpenTable(_Table):
         return dict(self.model_extra or {})
 
 
+UnitName = Annotated[str, Field(pattern="^[A-Za-zµμ]+$")]
+
+
+class UnitsTable(_Table):
+    """Names of the units that the scene's numbers are in, for labels alone: no number depends on them."""
+
+    length: UnitName = Field(description="Name of the unit of length, as `cm`")
+    time: UnitName = Field(description="Name of the unit of time, as `s`")
+    mass: UnitName = Field(description="Name of the unit of mass, as `g`")
+
+
 class SceneTable(_Table):
-    """Name, number of dimensions and random seed of the scene."""
+    """Name, number of dimensions and random seed of the scene, and names of its units."""
 
     name: str = Field(pattern=r"^[\w.-]*\w$", description="Name of the scene; results go to `out/<name>` by default")
     dimension: Literal[2, 3] = Field(description="Number of space dimensions d")
     seed: int = Field(default=0, ge=0, description="Seed of all random numbers")
+    units: UnitsTable | None = Field(
+        default=None, description="Names of units, in labels of pictures and pages; `length`, `time`, … if not given"
+    )
 
 
 class FluidTable(_OpenTable):

@@ -23,13 +23,9 @@ from rigidfluid.post.movies.shot import Shot, Window, shot_of
 from rigidfluid.post.reports.canvas import Canvas, body_shells
 from rigidfluid.post.reports.results import Results, read_results
 from rigidfluid.post.reports.scale import Quantity, Scale
+from rigidfluid.post.reports.shared_scale import shared_scale
 from rigidfluid.post.reports.style import SKY, STYLE, VERMILLION, new_figure
 from rigidfluid.post.reports.view_plane import PlaneName
-
-_SAMPLED = 12
-"""Number of pictures that fix the range of the colours."""
-_SHARE = 99.5
-"""Per cent of the points whose value has a colour of its own."""
 
 Progress = Callable[[int, int], None]
 
@@ -77,7 +73,8 @@ def movie(
     look, results = look or Look(), read_results(Path(folder), motion_only=True, model=model)
     path, writer = _writer(Path(out) if out else None, Path(folder), look.rate)
     shot, frames = shot_of(results, look.follow, look.window, look.plane), _frames(results)
-    scale = _scale(frames, shot, look)
+    follow = None if look.follow is None else results.number_of(look.follow)
+    scale = shared_scale(results, look.show, shot.plane, follow) if results.series else None
     partial = path.with_name(f".{path.name}.part{path.suffix}")
     with matplotlib.rc_context(STYLE | _encoder()), writing(path):
         figure, axes, image = _stage(results, shot, look, scale)
@@ -106,20 +103,9 @@ def _frames(results: Results) -> list[_Frame]:
     return found
 
 
-def _scale(frames: list[_Frame], shot: Shot, look: Look) -> Scale:
-    """Scale of the colours, one for the whole movie."""
-    chosen = np.unique(np.linspace(0, len(frames) - 1, _SAMPLED).round().astype(int))
-    images = [
-        flow_image(frame.path, look.show, shot.grid(frame.state, look.longer // 2))
-        for frame in (frames[i] for i in chosen)
-        if frame.path is not None
-    ]
-    return Scale.fit(look.show, images, _SHARE)
-
-
-def _picture(results: Results, shot: Shot, frame: _Frame, look: Look, scale: Scale) -> FloatArray:
+def _picture(results: Results, shot: Shot, frame: _Frame, look: Look, scale: Scale | None) -> FloatArray:
     grid = shot.grid(frame.state, look.longer)
-    if frame.path is not None:
+    if frame.path is not None and scale is not None:
         picture = paint_flow(flow_image(frame.path, look.show, grid), scale)
         draw_bodies(picture, grid, results, frame.state)
         return picture
@@ -132,7 +118,7 @@ def _picture(results: Results, shot: Shot, frame: _Frame, look: Look, scale: Sca
     return picture
 
 
-def _stage(results: Results, shot: Shot, look: Look, scale: Scale) -> tuple[Figure, Axes, AxesImage]:
+def _stage(results: Results, shot: Shot, look: Look, scale: Scale | None) -> tuple[Figure, Axes, AxesImage]:
     """A figure with an empty picture, and the colour bar next to it where there is a fluid."""
     size = shot.upper - shot.lower
     width, height = look.longer / 100.0 * size / size.max()
@@ -142,9 +128,9 @@ def _stage(results: Results, shot: Shot, look: Look, scale: Scale) -> tuple[Figu
     axes.locator_params(axis="x", nbins=1 if size[1] > 4.0 * size[0] else 4)
     axes.locator_params(axis="y", nbins=2 if size[0] > 4.0 * size[1] else 5)
     image = axes.imshow(np.ones((2, 2, 3)), origin="lower", interpolation="nearest")
-    if results.series:
-        scale.draw_bar(figure, [axes], results.system.dimension, exceeded=True)
-    return figure, axes, image
+    if scale is not None:
+        scale.draw_bar(figure, [axes], results.system.dimension)
+    return results.units.put_into_labels(figure), axes, image
 
 
 def _label(axes: Axes, shot: Shot, state: int, time: float) -> None:

@@ -15,9 +15,11 @@ from rigidfluid.post.reports.raster import Grid
 from rigidfluid.post.reports.results import Results
 from rigidfluid.post.reports.scale import Quantity, Scale
 from rigidfluid.post.reports.section import Section
-from rigidfluid.post.reports.style import BODY
+from rigidfluid.post.reports.style import BODY, HATCH, OUTSIDE
 
-_OUTSIDE, _NOTHING, _MARK, _EDGE = to_rgb("#d9d9d9"), to_rgb("white"), to_rgb("black"), to_rgb("#404040")
+_NOTHING, _MARK, _EDGE = to_rgb("white"), to_rgb("black"), to_rgb("#404040")
+_APART, _THICK = 8, 2
+"""Points from line to line of the hatching, and across a line."""
 _HAND = 0.12
 """Half the width of the mark over the body's bounding radius."""
 
@@ -29,15 +31,21 @@ def flow_image(path: Path, quantity: Quantity, grid: Grid) -> FloatArray:
 
 
 def paint_flow(image: FloatArray, scale: Scale) -> FloatArray:
-    """A picture (rows, columns, 3) of values (rows, columns), grey where they are nan."""
-    return np.where(np.isfinite(image)[..., None], scale.colours(np.nan_to_num(image)), _OUTSIDE)
+    """A picture (rows, columns, 3) of values (rows, columns), hatched where they are nan."""
+    return np.where(np.isfinite(image)[..., None], scale.colours(np.nan_to_num(image)), hatching(*image.shape))
+
+
+def hatching(rows: int, columns: int) -> FloatArray:
+    """A picture (rows, columns, 3) of what is not in the domain: oblique lines."""
+    line = (np.arange(columns) - np.arange(rows)[:, None]) % _APART < _THICK
+    return np.where(line[..., None], to_rgb(HATCH), to_rgb(OUTSIDE))
 
 
 def ground(results: Results, grid: Grid) -> FloatArray:
-    """A picture without a fluid: the domain white, (rows, columns, 3)."""
+    """A picture without a fluid: the domain white, hatched around it, (rows, columns, 3)."""
     points = grid.points()
     inside = results.system.domain.contains(points.reshape(-1, points.shape[-1])).reshape(points.shape[:2])
-    return np.where(inside[..., None], _NOTHING, _OUTSIDE)
+    return np.where(inside[..., None], _NOTHING, hatching(grid.rows, grid.columns))
 
 
 def draw_bodies(picture: FloatArray, grid: Grid, results: Results, state: int) -> None:

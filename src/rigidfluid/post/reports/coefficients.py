@@ -48,21 +48,21 @@ class Figures:
 
 
 def reference(results: Results) -> Reference | None:
-    """The stream that the scene prescribes, else the motion of the bodies; None in fluids without inertia, without a
-    fluid, or where nothing moves."""
+    """The stream that the scene prescribes, else the fastest motion that it prescribes to a body; None without both, as
+    for bodies that fall, whose speed is a result, without a fluid, and in one without inertia."""
     problem = results.system.fluid
     if problem is None or not problem.inertia:
         return None
-    stream, speed = prescribed_stream(results), np.linalg.norm(results.vectors("v"), axis=2)
+    stream = prescribed_stream(results)
     if stream is not None:
         words = "the greatest mean velocity of an inlet"
         return Reference(float(np.linalg.norm(stream)), _axes(results, stream), words)
-    if speed.max() == 0.0:
+    towed = results.vectors("v")[:, results.system.prescribed].reshape(-1, results.system.dimension)
+    speed = np.linalg.norm(towed, axis=1)
+    if not speed.any():
         return None
-    gravity = np.asarray(results.model.gravity or np.zeros(results.system.dimension), dtype=float)
-    fastest = results.vectors("v")[np.unravel_index(speed.argmax(), speed.shape)]
-    along = -np.sign(fastest @ gravity) * gravity if fastest @ gravity != 0.0 else -fastest
-    return Reference(float(speed.max()), _axes(results, along), "the greatest speed of a body")
+    fastest = towed[speed.argmax()]
+    return Reference(float(speed.max()), _axes(results, -fastest), "the greatest prescribed speed of a body")
 
 
 def diameters(results: Results) -> FloatArray:

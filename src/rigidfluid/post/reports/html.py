@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 from pathlib import Path
+from urllib.parse import quote
 
 from matplotlib.figure import Figure
 
@@ -20,6 +21,7 @@ h1, h2 { line-height: 1.2; } h2 { margin-top: 2.2rem; }
 table { border-collapse: collapse; } th, td { text-align: left; padding: .2rem 1.2rem .2rem 0; }
 tr { border-bottom: 1px solid #ddd; } td.n, thead th.n { text-align: right; font-variant-numeric: tabular-nums; }
 img { max-width: 100%; height: auto; } figure { margin: 1rem 0; } figcaption { color: #555; }
+nav { border-bottom: 1px solid #ddd; padding-bottom: .6rem; }
 pre { background: #f6f6f6; padding: 1rem; overflow-x: auto; } .note { color: #8a3c00; }
 """
 
@@ -31,6 +33,25 @@ def document(title: str, parts: Iterable[str]) -> str:
         f'<!doctype html>\n<html lang="en">\n<head><meta charset="utf-8"><title>{name}</title>'
         f"<style>{_STYLE}</style></head>\n<body>\n<h1>{name}</h1>\n" + "\n".join(parts) + "\n</body>\n</html>\n"
     )
+
+
+def with_contents(parts: Iterable[str]) -> Iterator[str]:
+    """The parts of a page after a list of links to its headings, ``<h2>`` at the start of a part."""
+    found, headings = list(parts), 0
+    links = []
+    for i, part in enumerate(found):
+        if part.startswith("<h2>"):
+            headings += 1
+            found[i] = part.replace("<h2>", f'<h2 id="part{headings}">', 1)
+            links.append(f'<a href="#part{headings}">{part[4 : part.index("</h2>")]}</a>')
+    yield f"<nav>{' · '.join(links)}</nav>"
+    yield from found
+
+
+def file_list(files: Iterable[tuple[str, str]]) -> str:
+    """Links to files next to the page, each with what is in it."""
+    items = (f'<li><a href="{quote(name)}">{escape(name)}</a>: {escape(words)}</li>' for name, words in files)
+    return "<ul>\n" + "\n".join(items) + "\n</ul>"
 
 
 def table(rows: Iterable[tuple[str, object]]) -> str:

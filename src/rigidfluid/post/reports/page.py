@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from datetime import UTC, datetime
 from html import escape
 from typing import Any
 
@@ -10,7 +11,8 @@ from rigidfluid.core.output.energy_account import per_cent
 from rigidfluid.core.output.verdict import verdict
 from rigidfluid.core.scene.scene_text import scene_text
 from rigidfluid.post.reports.coefficients import Figures
-from rigidfluid.post.reports.html import document, grid, table
+from rigidfluid.post.reports.html import document, file_list, grid, table, with_contents
+from rigidfluid.post.reports.results import Results
 
 _MOST_BODIES = 8
 _ENERGIES = {
@@ -44,31 +46,50 @@ _SHARES = {
 
 
 def page(
-    summary: Mapping[str, Any],
+    results: Results,
+    files: Iterable[tuple[str, str]],
     pictures: Sequence[str],
     notes: Iterable[str],
     coefficients: Sequence[tuple[str, Figures]],
 ) -> str:
-    """Compose the HTML page from summary.json, embedded pictures, notes, and coefficients by body."""
-    scene = escape(scene_text(summary["scene"]))
-    told = (f"{grade.capitalize()}: {text}" for grade, text in verdict(summary))
-    parts = [
-        f"<p>Status: {escape(summary['status'])}. Units are those of the scene; in 2D all is per unit depth.</p>",
+    """Compose the HTML page from results, names and content of files next to it, embedded pictures, notes, and
+    coefficients by body."""
+    summary, scene = results.summary, results.model.document
+    told = (f"{grade.capitalize()}: {text}" for grade, text in verdict(summary)) if summary else ()
+    measured = [
+        f"<p>{escape(_status(results))} Units are those of the scene; in 2D all is per unit depth.</p>",
         *(f'<p class="note">{escape(note)}</p>' for note in (*told, *notes)),
-        table(_figures(summary)),
-        *_cycles(summary.get("cycles", {})),
+        *([table(_figures(summary)), *_cycles(summary.get("cycles", {}))] if summary else ()),
         *_coefficients(coefficients),
+        "<h2>Pictures</h2>",
         *pictures,
-        "<h2>Energy balance</h2>",
-        table(_energy(summary["energy"])),
-        "<h2>Cost</h2>",
-        table(_cost(summary)),
-        "<h2>Scene</h2>",
-        f"<details open><summary>With all defaults</summary><pre>{scene}</pre></details>",
-        "<h2>Versions</h2>",
-        table(summary["versions"].items()),
+        *(_balance_and_cost(summary) if summary else ()),
     ]
-    return document(summary["scene"]["scene"]["name"], parts)
+    parts = [
+        *map(results.units.put_into, measured),
+        "<h2>Data</h2>",
+        file_list(files),
+        "<h2>Scene</h2>",
+        f"<details open><summary>With all defaults</summary><pre>{escape(scene_text(scene))}</pre></details>",
+        *(["<h2>Versions</h2>", table(summary["versions"].items())] if summary else ()),
+    ]
+    return document(scene["scene"]["name"], with_contents(parts))
+
+
+def _status(results: Results) -> str:
+    """Sentences that tell how far the run is, what it is from, and when its latest row was written."""
+    summary, end = results.summary, results.model.time.end
+    at = f"{results.time[-1]:.5g} of {end:.5g} [time]"
+    status = f"Status: {summary['status']}" if summary else "Status: goes on, or was stopped; resumed by --resume"
+    written = datetime.fromtimestamp(results.written, UTC)
+    made = (
+        f"Results of {written:%Y-%m-%d %H:%M} UTC, by rigidfluid run with the scene below; page by rigidfluid report."
+    )
+    return f"{status}, at {at}. {made}"
+
+
+def _balance_and_cost(summary: Mapping[str, Any]) -> Iterator[str]:
+    yield from ("<h2>Energy balance</h2>", table(_energy(summary["energy"])), "<h2>Cost</h2>", table(_cost(summary)))
 
 
 def _figures(summary: Mapping[str, Any]) -> Iterable[tuple[str, object]]:

@@ -12,12 +12,8 @@ from matplotlib.figure import Figure
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.post.reports.moment import Moment, View
 from rigidfluid.post.reports.raster import Grid
-from rigidfluid.post.reports.scale import Quantity, Scale
-from rigidfluid.post.reports.style import BLACK, BODY, new_figure
-
-SHARE = 99.0
-"""Per cent of the nodes whose vorticity or pressure has a colour of its own: at one sharp corner both are without
-bound."""
+from rigidfluid.post.reports.scale import Scale
+from rigidfluid.post.reports.style import BLACK, BODY, HATCH, OUTSIDE, new_figure
 
 TALLEST, NARROWEST = 8.0, 1.4
 """A panel's greatest height, and the least width of its place [inch]."""
@@ -31,53 +27,40 @@ Over = Callable[[Axes, Moment, View], object]
 """Function that draws over the colours."""
 
 
-def speed_picture(shown: Sequence[Moment]) -> Figure:
-    """Speed in the whole domain."""
-    views = [View.whole(moment) for moment in shown]
-    return _panels(shown, views, _speed(shown, views))
+def flow_picture(shown: Sequence[Moment], scale: Scale) -> Figure:
+    """Speed, pressure or vorticity, of a slice its component to the observer, in the whole domain."""
+    return _panels(shown, [View.whole(moment) for moment in shown], scale)
 
 
-def streamline_picture(shown: Sequence[Moment]) -> Figure:
+def streamline_picture(shown: Sequence[Moment], scale: Scale) -> Figure:
     """Streamlines over the speed, seen by an observer at rest."""
-    views = [View.whole(moment) for moment in shown]
-    return _panels(shown, views, _speed(shown, views), _draw_streamlines)
+    return _panels(shown, [View.whole(moment) for moment in shown], scale, _draw_streamlines)
 
 
-def vorticity_picture(shown: Sequence[Moment]) -> Figure:
-    """Vorticity in the whole domain, of a slice the component to the observer."""
-    return _signed_picture(shown, "vorticity")
+def whole_mesh_picture(moment: Moment, scale: Scale) -> Figure:
+    """All cells over the speed."""
+    return _panels([moment], [View.whole(moment)], scale, _draw_mesh)
 
 
-def pressure_picture(shown: Sequence[Moment]) -> Figure:
-    """Dynamic pressure in the whole domain."""
-    return _signed_picture(shown, "pressure")
-
-
-def whole_mesh_picture(moment: Moment) -> Figure:
-    """All cells."""
-    view = View.whole(moment)
-    return _panels([moment], [view], _speed([moment], [view]), _draw_mesh)
-
-
-def mesh_picture(shown: Sequence[Moment]) -> Figure:
+def mesh_picture(shown: Sequence[Moment], scale: Scale) -> Figure:
     """Speed and mesh about one body."""
-    return _mesh_panels(shown, [View.about(moment.centre, 1.5 * moment.width) for moment in shown])
+    return _mesh_panels(shown, [View.about(moment.centre, 1.5 * moment.width) for moment in shown], scale)
 
 
-def gap_picture(moment: Moment, middle: FloatArray) -> Figure:
+def gap_picture(moment: Moment, middle: FloatArray, scale: Scale) -> Figure:
     """Close-up of a gap about its ``middle`` (2,), with its cells."""
-    return _mesh_panels([moment], [View.about(middle, min(4.0 * moment.gap, moment.width))])
+    return _mesh_panels([moment], [View.about(middle, min(4.0 * moment.gap, moment.width))], scale)
 
 
-def _mesh_panels(shown: Sequence[Moment], views: Sequence[View]) -> Figure:
-    figure = _panels(shown, views, _speed(shown, views), _draw_mesh)
+def _mesh_panels(shown: Sequence[Moment], views: Sequence[View], scale: Scale) -> Figure:
+    figure = _panels(shown, views, scale, _draw_mesh)
     for axes, moment in zip(figure.axes, shown, strict=False):
         axes.set_title(f"time {moment.time:.4g}, gap {moment.gap:.3g}")
     return figure
 
 
 def _panels(shown: Sequence[Moment], views: Sequence[View], scale: Scale, over: Over | None = None) -> Figure:
-    """One panel a moment, solids grey, the same colours for the same value in all."""
+    """One panel a moment, bodies grey, what is outside hatched, the same colours for the same value in all."""
     figure, panels = frame(len(shown), views[0], shown[0].section.plane.labels)
     for axes, moment, view in zip(panels, shown, views, strict=True):
         axes.tripcolor(
@@ -89,7 +72,7 @@ def _panels(shown: Sequence[Moment], views: Sequence[View], scale: Scale, over: 
         if over is not None:
             over(axes, moment, view)
         for outline in moment.outlines:
-            axes.plot(*outline.T, color=BLACK, linewidth=0.8)
+            axes.fill(*outline.T, facecolor=BODY, edgecolor=BLACK, linewidth=0.8)
         _look_at(axes, view)
         axes.set_title(f"time {moment.time:.4g}")
     scale.draw_bar(figure, panels, 3 if shown[0].section.is_slice else 2)
@@ -115,7 +98,7 @@ def frame(count: int, view: View, labels: tuple[str, str]) -> tuple[Figure, list
 
 
 def _look_at(axes: Axes, view: View) -> None:
-    axes.set_facecolor(BODY)
+    axes.patch.set(facecolor=OUTSIDE, edgecolor=HATCH, hatch="////", linewidth=0.0)
     axes.grid(visible=False)
     axes.set_aspect("equal")
     axes.set_xlim(view.lower[0], view.upper[0])
@@ -123,20 +106,6 @@ def _look_at(axes: Axes, view: View) -> None:
     width, height = view.upper - view.lower
     axes.locator_params(axis="x", nbins=4 if height < 4.0 * width else 1)
     axes.locator_params(axis="y", nbins=4 if width < 4.0 * height else 2)
-
-
-def _speed(shown: Sequence[Moment], views: Sequence[View]) -> Scale:
-    """From rest to the highest speed that is seen."""
-    sections = [moment.section for moment in shown]
-    seen = [one.speed[view.holds(one.flat_points)] for one, view in zip(sections, views, strict=True)]
-    fastest = max(float(values.max(initial=0.0)) for values in seen)
-    return Scale("speed", 0.0, fastest)
-
-
-def _signed_picture(shown: Sequence[Moment], quantity: Quantity) -> Figure:
-    """Values about zero, with colours for those of most nodes."""
-    scale = Scale.fit(quantity, [moment.section.values(quantity) for moment in shown], SHARE)
-    return _panels(shown, [View.whole(moment) for moment in shown], scale)
 
 
 def _draw_mesh(axes: Axes, moment: Moment, view: View) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -10,7 +11,7 @@ import numpy as np
 
 from rigidfluid.core.output.disk import writing
 from rigidfluid.core.output.results_folder import refuse_links
-from rigidfluid.core.output.run_files import RUN
+from rigidfluid.core.output.run_files import FILES, RUN
 from rigidfluid.core.setup.model import Model
 from rigidfluid.post.reports.coefficient_plot import coefficient_caption, coefficient_plot
 from rigidfluid.post.reports.coefficients import Figures, figures, reference
@@ -30,16 +31,16 @@ from rigidfluid.post.reports.moment import moment, narrowest, nearest_body, show
 from rigidfluid.post.reports.narrowest import gap_middle
 from rigidfluid.post.reports.page import page
 from rigidfluid.post.reports.pictures import (
+    flow_picture,
     gap_picture,
     mesh_picture,
-    pressure_picture,
-    speed_picture,
     streamline_picture,
-    vorticity_picture,
     whole_mesh_picture,
 )
 from rigidfluid.post.reports.results import Results, read_results
 from rigidfluid.post.reports.rotation_plot import rotation_plot, torque_plot, turning
+from rigidfluid.post.reports.scale import QUANTITIES
+from rigidfluid.post.reports.shared_scale import shared_scale
 from rigidfluid.post.reports.space import dry_space_picture, flow_space_picture
 from rigidfluid.post.reports.style import STYLE
 from rigidfluid.post.reports.view_plane import PlaneName, ViewPlane, view_plane
@@ -62,8 +63,13 @@ def report(out: Path, plane: PlaneName = "motion", follow: str | None = None, mo
     body = None if follow is None else results.number_of(follow)
     with matplotlib.rc_context(STYLE), writing(out / FOLDER):
         (out / FOLDER).mkdir(exist_ok=True)
-        written, shown = save_pictures(_pictures(results, seen, body), out / FOLDER)
-        (out / PAGE).write_text(page(results.summary, shown, _notes(results), _figures(results)), encoding="utf-8")
+        units = results.units
+        named = (
+            (name, units.put_into(caption), units.put_into_labels(figure), kinds)
+            for name, caption, figure, kinds in _pictures(results, seen, body)
+        )
+        written, shown = save_pictures(named, out / FOLDER)
+        (out / PAGE).write_text(page(results, _data(out), shown, _notes(results), _figures(results)), encoding="utf-8")
     return [*written, out / PAGE]
 
 
@@ -72,29 +78,36 @@ def _flow_pictures(results: Results, plane: ViewPlane, body: int | None) -> Iter
     raster, watched = ("png",), nearest_body(results) if body is None else body
     where = _slice_location(results, plane, watched)
     shown = [moment(results, output, plane, watched) for output in shown_outputs(results)]
-    yield "speed_field", f"Speed of the fluid. Solids are grey.{where}", speed_picture(shown), raster
+    speed, turns, pressure = (shared_scale(results, quantity, plane, body) for quantity in QUANTITIES)
+    yield (
+        "speed_field",
+        f"Speed of the fluid. Bodies are grey, what is outside is hatched.{where}",
+        flow_picture(shown, speed),
+        raster,
+    )
     caption = f"Streamlines, seen by an observer at rest, over the speed.{where}"
     if where:
         caption += " None where the flow makes more than 45° with the plane."
-    yield "streamlines", caption, streamline_picture(shown), raster
+    yield "streamlines", caption, streamline_picture(shown, speed), raster
     caption = f"Vorticity, positive where the fluid turns counter-clockwise.{where}"
-    yield "vorticity", caption, vorticity_picture(shown), raster
-    yield "pressure", f"Dynamic pressure.{where}", pressure_picture(shown), raster
-    yield "whole_mesh", f"The whole mesh at the last output time.{where}", whole_mesh_picture(shown[-1]), raster
+    yield "vorticity", caption, flow_picture(shown, turns), raster
+    yield "pressure", f"Dynamic pressure.{where}", flow_picture(shown, pressure), raster
+    yield "whole_mesh", f"The whole mesh at the last output time.{where}", whole_mesh_picture(shown[-1], speed), raster
     if where:
         yield (
             "space",
             f"Bodies, the paths of a few, and the speed.{where}",
-            flow_space_picture(results, shown, plane),
+            flow_space_picture(results, shown, plane, speed),
             raster,
         )
     whose = "the body that came nearest to another surface" if body is None else results.names[body]
-    yield "mesh", f"Mesh about {whose}.{where}", mesh_picture(shown), raster
+    yield "mesh", f"Mesh about {whose}.{where}", mesh_picture(shown, speed), raster
     output, nearest = narrowest(results, body)
     middle = gap_middle(results, results.state_at(results.series[output][0]), nearest, plane)
     if middle is not None:
         caption = f"The smallest gap among the output times.{_slice_location(results, plane, nearest)}"
-        yield "smallest_gap", caption, gap_picture(moment(results, output, plane, nearest), middle), raster
+        picture = gap_picture(moment(results, output, plane, nearest), middle, speed)
+        yield "smallest_gap", caption, picture, raster
 
 
 def _slice_location(results: Results, plane: ViewPlane, body: int) -> str:
@@ -131,6 +144,14 @@ def _pictures(results: Results, plane: ViewPlane, body: int | None) -> Iterator[
     yield "energy", "Energy supplied, and where it is.", energy_plot(results), both
     if results.model.time.tolerance is not None:
         yield "step", "How long the steps are.", step_plot(results), both
+
+
+def _data(out: Path) -> Iterator[tuple[str, str]]:
+    """Names and content of the files that the run has written so far, but for those in folders."""
+    for files in FILES:
+        for path in sorted(out.iterdir()):
+            if re.fullmatch(files.pattern, path.name) and path.name != PAGE and path.suffix != ".part":
+                yield path.name, files.content.replace("`", "")
 
 
 def _figures(results: Results) -> list[tuple[str, Figures]]:

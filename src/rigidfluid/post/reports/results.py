@@ -3,30 +3,29 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rigidfluid.core.case.load import scene_of_results
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.model.joints import COORDINATES
 from rigidfluid.core.model.system import System
 from rigidfluid.core.output.checkpoint import read_scene
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import Row, columns, joint_coordinates, moving
 from rigidfluid.core.output.summary_file import read_summary, unreadable
-from rigidfluid.core.output.tables import KINDS, read_rows
+from rigidfluid.core.output.tables import KINDS, read_rows, table_path
 from rigidfluid.core.output.vtu import read_pvd
 from rigidfluid.core.output.writer import CHECKPOINT, SERIES, SUMMARY
 from rigidfluid.core.setup.assemble import assemble
 from rigidfluid.core.setup.description import IN_PYTHON
 from rigidfluid.core.setup.model import Model
 from rigidfluid.errors import OutputError
+from rigidfluid.post.reports.units import Units
 
 NEEDED = (
     *("scene", "status", "versions", "time", "steps", "rejected_steps", "remeshes", "cells", "unknowns"),
@@ -45,6 +44,7 @@ class Results:
     (s,) [time]; ``bodies`` by column (s, n); ``joints`` by column (s, j), no columns without any; ``energy`` by column
     (s,); ``series`` the times and files of the fields, empty without a fluid. ``wholes`` of mechanisms by column
     (s, mechanisms). ``contact_counts`` (s,): how many contacts there are within the range of the laws.
+    ``written``: when its latest row was [s since 1970].
     """
 
     summary: dict[str, Any]
@@ -57,11 +57,17 @@ class Results:
     joints: dict[str, FloatArray] = field(default_factory=dict)
     wholes: dict[str, FloatArray] = field(default_factory=dict)
     contact_counts: FloatArray = field(default_factory=lambda: np.zeros(0))
+    written: float = 0.0
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the bodies."""
         return self.system.surfaces[: len(self.system.bodies)]
+
+    @property
+    def units(self) -> Units:
+        """Names of units, if the scene has any."""
+        return Units.told_in(self.model.document)
 
     @property
     def joint_names(self) -> tuple[str, ...]:
@@ -105,26 +111,30 @@ class Results:
 def read_results(folder: Path, *, motion_only: bool = False, model: Model | None = None) -> Results:
     """Read a run's folder, all but the fields themselves, which are read one by one.
 
-    With ``motion_only`` energies, joints and contacts are left out, and a run that was killed or goes on, which has no
-    summary, can be read. A run of a model made in Python wants the ``model``. Raises OutputError that names a missing
-    or unreadable file; SceneError or PluginError if the run's scene cannot be built here, as without one of its
-    plug-ins.
+    With ``motion_only`` energies, joints and contacts are left out. A run that was killed or goes on has no summary:
+    it is read as far as all its tables are. A run of a model made in Python wants the ``model``. Raises OutputError
+    that names a missing or unreadable file; SceneError or PluginError if the run's scene cannot be built here, as
+    without one of its plug-ins.
     """
-    complete = not motion_only or (folder / SUMMARY).exists()
+    complete = (folder / SUMMARY).exists()
+    if not complete and not (folder / CHECKPOINT).exists():
+        raise unreadable(folder / SUMMARY, f"no file, and no {CHECKPOINT}")
+    series = read_pvd(folder / SERIES) if (folder / SERIES).exists() else ()  # before tables, which may grow
     summary = read_summary(folder / SUMMARY, NEEDED) if complete else {}
     told = summary["scene"] if complete else read_scene(folder / CHECKPOINT)
     model = _model(told, folder) if model is None else _same(model, told, folder)
     system = assemble(model)
-    bodies = _table(folder, "bodies", model.dimension, complete=complete)
+    count, links = len(system.bodies), len(_joint_names(system))
+    wanted = {"bodies": len(moving(system))} | ({} if motion_only else {"energy": 1, "joints": links})
+    tables = {
+        name: _table_by_state(folder, name, system, each, complete=complete)
+        for name, each in wanted.items()
+        if each > 0
+    }
+    whole = min(len(table["step"]) for table in tables.values())
     if not complete:
-        bodies = {name: values[: len(values) - len(values) % len(moving(system))] for name, values in bodies.items()}
-    energy = {} if motion_only else _table(folder, "energy", model.dimension)
-    by_state = {name: _per_state(folder / "bodies.csv", values, len(moving(system))) for name, values in bodies.items()}
-    count = len(system.bodies)
-    links = len(_joint_names(system))
-    joints = {}
-    if links and not motion_only:
-        joints = _table(folder, "joints", model.dimension, coordinates=joint_coordinates(system))
+        tables = {name: {key: values[:whole] for key, values in table.items()} for name, table in tables.items()}
+    by_state = tables["bodies"]
     steps = by_state["step"][:, 0]
     return Results(
         summary=summary,
@@ -132,10 +142,11 @@ def read_results(folder: Path, *, motion_only: bool = False, model: Model | None
         system=system,
         time=by_state["time"][:, 0],
         bodies={name: values[:, :count] for name, values in by_state.items()},
-        joints={name: _per_state(folder / "joints.csv", values, links) for name, values in joints.items()},
-        energy=energy,
-        series=read_pvd(folder / SERIES) if (folder / SERIES).exists() else (),
+        joints=tables.get("joints", {}),
+        energy={name: values[:, 0] for name, values in tables.get("energy", {}).items()},
+        series=series,
         wholes={name: values[:, count:] for name, values in by_state.items()},
+        written=table_path(folder, "bodies").stat().st_mtime,
         contact_counts=np.zeros(0) if motion_only else _contact_counts(folder, model.dimension, steps),
     )
 
@@ -155,21 +166,29 @@ def _model(tables: dict[str, Any], folder: Path) -> Model:
     return model_of(scene_of_results(tables))
 
 
-def _table(
-    folder: Path, name: str, dimension: int, *, coordinates: Iterable[str] = COORDINATES, complete: bool = True
-) -> dict[str, NDArray[Any]]:
-    """A table by column; every row must be whole, and every column but the names a number."""
-    path, names = folder / f"{name}.csv", columns(dimension, coordinates)[name]
+def _table_by_state(folder: Path, name: str, system: System, count: int, *, complete: bool) -> dict[str, FloatArray]:
+    """A table by column, each but the names (s, count): every row must be whole, and every state.
+
+    A last row or state that is not whole is dropped, if the table need not be ``complete``.
+    """
+    path, coordinates = table_path(folder, name), joint_coordinates(system)
+    names = columns(system.dimension, coordinates)[name]
     rows = _rows(path, names, complete=complete)
-    history = History(dimension, {name: rows}, coordinates=coordinates)
-    return {key: values.astype(np.float64) for key, values in history.table(name).items() if KINDS.get(key) is not str}
+    over = len(rows) % count
+    if complete and over:
+        raise unreadable(path, f"{len(rows)} rows, no multiple of the {count} that a state has")
+    history = History(system.dimension, {name: rows[: len(rows) - over]}, coordinates=coordinates)
+    table = history.table(name).items()
+    return {key: values.astype(np.float64).reshape(-1, count) for key, values in table if KINDS.get(key) is not str}
 
 
 def _contact_counts(folder: Path, dimension: int, steps: FloatArray) -> FloatArray:
-    """How many rows the table of contacts has for each of the ``steps`` (s,), which rise."""
+    """How many rows the table of contacts has for each of the ``steps`` (s,), which rise; there may be later ones."""
     path, names = folder / "contacts.csv", columns(dimension)["contacts"]
-    at_contacts = [row[names.index("step")] for row in _rows(path, names, may_be_empty=True)]
-    return np.bincount(np.searchsorted(steps, np.array(at_contacts, dtype=float)), minlength=len(steps)).astype(float)
+    rows = _rows(path, names, may_be_empty=True, complete=(folder / SUMMARY).exists())
+    at_contacts = np.array([row[names.index("step")] for row in rows], dtype=float)
+    known = np.searchsorted(steps, at_contacts[at_contacts <= steps[-1]])
+    return np.bincount(known, minlength=len(steps)).astype(float)
 
 
 def _joint_names(system: System) -> tuple[str, ...]:
@@ -196,9 +215,3 @@ def _rows(path: Path, names: Sequence[str], *, may_be_empty: bool = False, compl
     if torn is not None or not (rows or may_be_empty):
         raise unreadable(path, "no rows" if torn is None else f"a torn line {torn}")
     return rows
-
-
-def _per_state(path: Path, values: FloatArray, count: int) -> FloatArray:
-    if len(values) % count:
-        raise unreadable(path, f"{len(values)} rows, no multiple of the {count} that a state has")
-    return values.reshape(-1, count)

@@ -4,35 +4,50 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Colormap, Normalize
+from matplotlib.colors import AsinhNorm, Colormap, Normalize
 from matplotlib.figure import Figure
 
 from rigidfluid.core.geometry.arrays import FloatArray
 
 COLOURMAP, SIGNED_COLOURMAP = "viridis", "RdBu_r"
 Quantity = Literal["speed", "vorticity", "pressure"]
+QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
+
+
+_MOST, _USUAL = 99.9, 80.0
+"""Per cent of the area whose values have colours of their own, and whose values are not squeezed."""
+_WEAKEST = 0.03
+"""Least value from which on colours are squeezed, over the highest."""
 
 
 @dataclass(frozen=True)
 class Scale:
-    """Range of colours of a ``quantity``, from ``lowest`` to ``highest``."""
+    """Range of colours of a ``quantity``, from ``lowest`` to ``highest``: even steps up to ``linear``, beyond that
+    steps that grow with the value."""
 
     quantity: Quantity
     lowest: float
     highest: float
+    linear: float
 
     @classmethod
-    def fit(cls, quantity: Quantity, values: Sequence[FloatArray], percent: float) -> Scale:
-        """Fit the range to so many per cent of the finite values; from zero for the speed, else symmetric about it."""
-        known = np.concatenate([one[np.isfinite(one)] for one in values] or [np.zeros(0)])
-        highest = float(np.percentile(np.abs(known), percent)) if known.size else 0.0
-        return cls(quantity, 0.0 if quantity == "speed" else -highest, highest)
+    def fit(cls, quantity: Quantity, values: Sequence[FloatArray], areas: Sequence[FloatArray]) -> Scale:
+        """Fit the range to values (K,), each on an area (K,).
+
+        Speeds have even steps from zero to the highest. Vorticity and pressure are symmetric about zero and strong,
+        even without bound, in small places: almost all of the area has colours of its own, weak values among them.
+        """
+        size, weights = np.abs(np.concatenate(values)), np.concatenate(areas)
+        if quantity == "speed":
+            return cls(quantity, 0.0, float(size.max()), float(size.max()))
+        usual, highest = np.percentile(size, (_USUAL, _MOST), weights=weights, method="inverted_cdf").tolist()
+        return cls(quantity, -highest, highest, max(usual, _WEAKEST * highest))
 
     @property
     def map(self) -> Colormap:
@@ -42,16 +57,30 @@ class Scale:
     @property
     def norm(self) -> Normalize:
         """Share of the range that a value is at."""
-        return Normalize(self.lowest, self.highest or 1.0)
+        if self.lowest == 0.0 or self.linear == self.highest:
+            return Normalize(self.lowest, self.highest or 1.0)
+        return AsinhNorm(self.linear, self.lowest, self.highest)
 
     def colours(self, values: FloatArray) -> FloatArray:
         """RGB (…, 3) of values (…)."""
         return np.asarray(self.map(self.norm(values)))[..., :3]
 
-    def draw_bar(self, figure: Figure, panels: Sequence[Axes], dimension: int, *, exceeded: bool = False) -> None:
-        """Draw the colour bar next to the panels; whether the highest are ``exceeded`` is said for speeds alone."""
-        extend = "both" if self.lowest < 0.0 else "max" if exceeded else "neither"
+    def draw_bar(self, figure: Figure, panels: Sequence[Axes], dimension: int) -> None:
+        """Draw the colour bar next to the panels."""
+        extend = "both" if self.lowest < 0.0 else "max"
         area = "force/area" if dimension == 3 else "force/length"
         unit = {"speed": "length/time", "vorticity": "1/time", "pressure": area}[self.quantity]
         label = f"{self.quantity} [{unit}]"
-        figure.colorbar(ScalarMappable(self.norm, self.map), ax=list(panels), label=label, shrink=0.8, extend=extend)
+        colours = ScalarMappable(self.norm, self.map)
+        bar = figure.colorbar(colours, ax=list(panels), label=label, shrink=0.8, extend=extend)
+        if isinstance(self.norm, AsinhNorm):
+            ends = [_rounded(value) for value in self.norm.inverse(np.array([0.75, 0.98])).tolist()]
+            ticks = [-value for value in reversed(ends)] + [0.0, *ends]
+            bar.set_ticks(ticks, labels=[f"{value:g}".replace("-", "\N{MINUS SIGN}") for value in ticks], minor=False)
+            bar.minorticks_off()
+
+
+def _rounded(value: float) -> float:
+    """A positive value cut off after one digit."""
+    unit = 10.0 ** np.floor(np.log10(value))
+    return float(f"{np.floor(value / unit + 1e-9) * unit:.0e}")

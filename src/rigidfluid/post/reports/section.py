@@ -10,7 +10,7 @@ from matplotlib.tri import Triangulation
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.types import Fields
-from rigidfluid.post.reports.flow import vorticity
+from rigidfluid.core.output.cell_gradients import vorticity
 from rigidfluid.post.reports.plane import cell_by_cell, corner_triangles, fine_triangles
 from rigidfluid.post.reports.raster import Grid, Sampling
 from rigidfluid.post.reports.scale import Quantity
@@ -51,7 +51,7 @@ class Section:
     @cached_property
     def vorticity(self) -> FloatArray:
         """ω at the nodes of each cell, in 3D its component to the observer, (M, b) [1/time]."""
-        return vorticity(self.fields, self.plane.normal if self.is_slice else None)
+        return np.asarray(vorticity(self.fields) @ (self.plane.normal if self.is_slice else np.ones(1)))
 
     def values(self, quantity: Quantity) -> FloatArray:
         """A quantity at the nodes (N,), or at those of each cell (M, b)."""
@@ -72,6 +72,13 @@ class Section:
         if values.ndim == 2:
             return cell_by_cell(self.fields), values.ravel()
         return fine_triangles(self.fields), values
+
+    def spread(self, quantity: Quantity) -> tuple[FloatArray, FloatArray]:
+        """A quantity at the corners of all triangles (K,), and the area that each stands for (K,)."""
+        triangulation, at_nodes = self.triangles(self.values(quantity))
+        corners = triangulation.triangles
+        first, second = (np.diff(axis[corners], axis=1).T for axis in (triangulation.x, triangulation.y))
+        return at_nodes[corners].ravel(), np.repeat(np.abs(first[0] * second[1] - first[1] * second[0]) / 6.0, 3)
 
     def image(self, values: FloatArray, grid: Grid) -> FloatArray:
         """Values, as `triangles` takes them, at the points of a ``grid`` in the plane, (rows, columns), nan outside

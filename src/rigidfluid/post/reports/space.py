@@ -32,10 +32,9 @@ _SLACK = 5e-3
 """Depth by which a line must be hidden to be left out, over the diagonal of the box: paths end in the bodies."""
 
 
-def flow_space_picture(results: Results, shown: Sequence[Moment], plane: ViewPlane) -> Figure:
+def flow_space_picture(results: Results, shown: Sequence[Moment], plane: ViewPlane, scale: Scale) -> Figure:
     """Draw the run with slices of the speed."""
-    fastest = max(float(moment.section.speed.max()) for moment in shown) or 1.0
-    return _panels(results, [moment.time for moment in shown], plane, shown, Scale("speed", 0.0, fastest))
+    return _panels(results, [moment.time for moment in shown], plane, shown, scale)
 
 
 def dry_space_picture(results: Results, times: Sequence[float], plane: ViewPlane) -> Figure:

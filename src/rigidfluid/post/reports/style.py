@@ -16,6 +16,8 @@ BLACK, ORANGE, SKY, GREEN, BLUE, VERMILLION, PURPLE = (
 )  # fmt: skip
 PALETTE = (BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY, BLACK)
 BODY = "#8c8c8c"
+OUTSIDE, HATCH = "#ededed", "#bcbcbc"
+"""Ground and oblique lines of what is not in the domain."""
 SOLID = "#d8d8d8"
 """Bodies under a light."""
 

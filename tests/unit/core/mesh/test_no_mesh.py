@@ -7,6 +7,7 @@ from scenes import dry_tables
 
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.output.records import count_cells
+from rigidfluid.core.output.vtu import read_pvd
 from rigidfluid.core.run.run import run
 from rigidfluid.core.run.simulation import Simulation
 
@@ -34,8 +35,8 @@ def test_a_table_of_a_mesh_is_not_read():
 
 def test_no_fields_are_written_and_no_probe_is_recorded(tmp_path):
     history = run(falling(output={"probes": [[0.5, 0.9]]}), tmp_path)
-    assert list((tmp_path / "fields").iterdir()) == []
-    assert not (tmp_path / "fields.pvd").exists()
+    assert {path.name.split(".", 1)[1] for path in (tmp_path / "fields").iterdir()} == {"bodies.vtu", "contacts.vtu"}
+    assert read_pvd(tmp_path / "fields.pvd") == ()
     assert len(history.probes["time"]) == 0
     assert json.loads((tmp_path / "summary.json").read_text())["cells"] == 0
 

@@ -25,6 +25,7 @@ def test_a_grid_is_the_one_on_disk(dimension: int, tmp_path: Path) -> None:
     np.testing.assert_array_equal(grid.points, read.points)
     np.testing.assert_array_equal(grid.celltypes, read.celltypes)
     np.testing.assert_array_equal(grid.cell_connectivity, read.cell_connectivity)
-    for name in ("velocity", "pressure"):
+    assert set(grid.point_data) == set(read.point_data) == {"velocity", "pressure", "vorticity"}
+    for name in read.point_data:
+        assert grid.point_data[name].shape == read.point_data[name].shape
         np.testing.assert_allclose(grid.point_data[name], read.point_data[name], rtol=1e-6, atol=1e-7)
-    assert grid.point_data["velocity"].shape == (grid.n_points, 3)

@@ -154,7 +154,9 @@ def test_other_programs_find_the_pieces(tmp_path):
     histories = shared(2, tmp_path, end=0.02)
     read = pyvista.read(tmp_path / "fields" / "000001.pvtu")
     assert read.n_cells == histories[0].summary["cells"]
-    assert {"velocity", "pressure"} <= set(read.point_data.keys())
+    assert {"velocity", "pressure", "vorticity"} <= set(read.point_data.keys())
+    points = {path.name for path in (tmp_path / "fields").iterdir() if "s.vtu" in path.name}
+    assert points == {f"00000{number}.{name}.vtu" for number in (0, 1) for name in ("bodies", "contacts")}
 
 
 @pytest.mark.long
@@ -246,7 +248,7 @@ def test_a_new_run_clears_the_parts_of_more_ranks(tmp_path):
     rigidfluid.run(fall(0.008), tmp_path)
     assert [path.name for path in tmp_path.glob("state*")] == ["state.h5"]
     assert {path.suffix for path in (tmp_path / "fields").iterdir()} == {".vtu"}
-    assert len(list((tmp_path / "fields").iterdir())) == 2
+    assert len(list((tmp_path / "fields").iterdir())) == 6
 
 
 def test_a_rank_s_full_disk_is_everyone_s_and_leaves_the_checkpoint_before(tmp_path, monkeypatch):
@@ -382,7 +384,7 @@ def test_nodes_that_pieces_share_are_one(tmp_path):
     second = replace(second, points=second.points * (1 + 1e-15))
     vtu.write_vtu(tmp_path / "a.0.vtu", first)
     vtu.write_vtu(tmp_path / "a.1.vtu", second)
-    vtu.write_pvtu(tmp_path / "a.pvtu", ["a.0.vtu", "a.1.vtu"])
+    vtu.write_pvtu(tmp_path / "a.pvtu", ["a.0.vtu", "a.1.vtu"], 2)
     read = read_vtu(tmp_path / "a.pvtu")
     assert len(read.points) == 9
     np.testing.assert_allclose(read.points[read.cells[1]], second.points, atol=1e-14)

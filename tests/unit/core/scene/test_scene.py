@@ -26,6 +26,7 @@ from rigidfluid.core.case.system import build_system
 from rigidfluid.core.fluid.conditions import NoSlip, PrescribedPressure, PrescribedVelocity, Slip
 from rigidfluid.core.scene.overrides import override
 from rigidfluid.core.scene.scene import Scene
+from rigidfluid.domains.box import NAMES
 from rigidfluid.errors import PluginError, SceneError
 from rigidfluid.registry import Registry
 
@@ -458,6 +459,18 @@ def test_system_in_3d() -> None:
     front = system.walls[5].shape.plane
     np.testing.assert_array_equal(front.unit_normal, [0, 0, -1])
     np.testing.assert_array_equal(front.point[2], 2.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "other"), list(zip(NAMES, ("xmin", "xmax", "ymin", "ymax", "zmin", "zmax"), strict=True))
+)
+def test_faces_are_named_by_axis_too(name: str, other: str) -> None:
+    slips = [
+        [type(condition) is Slip for condition in model_of(scene_from_dict(in_3d(boundary=tables))).conditions]
+        for tables in ([{"on": on, "type": "slip"}] for on in (name, other))
+    ]
+    assert slips[0] == slips[1]
+    assert sum(slips[0]) == 1
 
 
 def test_angle_in_3d_is_refused() -> None:

@@ -21,12 +21,12 @@ from rigidfluid.core.case.load import load_scene
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.errors import OutputError
 from rigidfluid.post.movies import Look, movie
-from rigidfluid.post.movies.picture import draw_bodies, flow_image, paint_flow
+from rigidfluid.post.movies.picture import draw_bodies, flow_image, ground, paint_flow
 from rigidfluid.post.movies.shot import shot_of
 from rigidfluid.post.reports.canvas import Canvas, body_shells
 from rigidfluid.post.reports.results import Results, read_results
 from rigidfluid.post.reports.scale import Scale
-from rigidfluid.post.reports.style import SKY, VERMILLION
+from rigidfluid.post.reports.style import BODY, HATCH, OUTSIDE, SKY, VERMILLION
 
 
 @pytest.fixture(scope="module")
@@ -122,15 +122,32 @@ def test_the_fluid_is_shown_as_it_is_in_the_files(wet: Path) -> None:
     fastest = np.nanmax(image)
     assert fastest == pytest.approx(-results.bodies["vy"][-1, 0], rel=0.1)
     assert np.isnan(image).sum() * grid.right[0] * grid.up[1] == pytest.approx(results.system.bodies[0].volume, rel=0.1)
-    scale = Scale.fit("speed", [image], 100.0)
+    scale = Scale("speed", 0.0, fastest, fastest)
     picture = paint_flow(image, scale)
     outside = np.isnan(image)
-    np.testing.assert_array_equal(picture[outside], np.full((outside.sum(), 3), to_rgb("#d9d9d9")))
+    shades = {tuple(colour) for colour in picture[outside].tolist()}
+    assert shades == {to_rgb(OUTSIDE), to_rgb(HATCH)}
     np.testing.assert_array_equal(picture[~outside], scale.colours(image[~outside]))
     np.testing.assert_allclose(scale.colours(np.array([0.0, fastest])), [cm["viridis"](x)[:3] for x in (0.0, 1.0)])
-    assert (scale.lowest, scale.highest) == (0.0, fastest)
-    signed = Scale.fit("vorticity", [image], 50.0)
-    assert signed.lowest == -signed.highest == -np.nanmedian(np.abs(image))
+
+
+def test_bodies_are_drawn_apart_from_what_is_outside(wet: Path) -> None:
+    """Of a window larger than the domain; a body's colour is nowhere outside, nor in the ground of a dry run."""
+    results = read_results(wet, motion_only=True)
+    grid = shot_of(results, None, (-0.5, 0.0, 2.5, 6.0)).grid(-1, 300)
+    image = flow_image(results.series[-1][1], "speed", grid)
+    picture = paint_flow(image, Scale("speed", 0.0, 1.0, 1.0))
+    lines = np.all(picture == to_rgb(HATCH), axis=2)
+    assert lines[:, :20].sum() == pytest.approx(0.25 * lines[:, :20].size, rel=0.02)
+    assert not np.all(picture == to_rgb(BODY), axis=2).any()
+    draw_bodies(picture, grid, results, -1)
+    grey = np.argwhere(np.all(picture == to_rgb(BODY), axis=2))
+    where = grid.origin + grey[:, 1:] * grid.right + grey[:, :1] * grid.up - results.vectors("")[-1, 0]
+    assert len(grey) > 50
+    assert np.linalg.norm(where, axis=1).max() < results.system.bodies[0].bounding_radius
+    dry = ground(results, grid)
+    np.testing.assert_array_equal(dry[:, :20], picture[:, :20])
+    assert np.all(dry[5:-5, 60:-60] == 1.0)
 
 
 def test_3d_is_cut_in_the_plane_of_gravity_and_motion(tmp_path: Path) -> None:

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from matplotlib.colors import to_hex
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.types import Fields
-from rigidfluid.post.reports.flow import EDGES, vorticity
+from rigidfluid.core.output.cell_gradients import EDGES, nodal_vorticity, vorticity
 from rigidfluid.post.reports.moment import Moment
-from rigidfluid.post.reports.pictures import (
-    pressure_picture,
-    speed_picture,
-    streamline_picture,
-    vorticity_picture,
-    whole_mesh_picture,
-)
+from rigidfluid.post.reports.pictures import flow_picture, streamline_picture, whole_mesh_picture
 from rigidfluid.post.reports.raster import Grid
+from rigidfluid.post.reports.scale import QUANTITIES, Scale
 from rigidfluid.post.reports.section import Section
+from rigidfluid.post.reports.style import BODY, HATCH, OUTSIDE
 from rigidfluid.post.reports.view_plane import ViewPlane
 
+SPEED = Scale("speed", 0.0, 1.0, 1.0)
 SPIN = np.array([0.3, -0.7, 1.9])
 
 
@@ -53,16 +53,29 @@ def test_a_rigid_rotation_has_twice_its_spin_also_in_curved_cells() -> None:
     np.testing.assert_allclose(vorticity(with_velocity(plane, turning)), 2.0 * SPIN[2], rtol=1e-13)
     space = curved_cell(3)
     turning = np.cross(SPIN, space.points)
-    for axis in range(3):
-        found = vorticity(with_velocity(space, turning), np.eye(3)[axis])
-        np.testing.assert_allclose(found, 2.0 * SPIN[axis], rtol=1e-12)
+    found = vorticity(with_velocity(space, turning))
+    np.testing.assert_allclose(found, np.broadcast_to(2.0 * SPIN, found.shape), rtol=1e-12)
+
+
+@pytest.mark.parametrize("at_once", [20_000, 5])
+def test_vorticity_at_a_node_is_the_mean_of_its_cells(monkeypatch: pytest.MonkeyPatch, at_once: int) -> None:
+    """Also if cells are taken in several parts."""
+    monkeypatch.setattr("rigidfluid.core.output.cell_gradients._AT_ONCE", at_once)
+    fields = square(3)
+    x, y = fields.points.T
+    fields = with_velocity(fields, np.stack([np.abs(y - 1 / 3), 0.0 * x], axis=1))
+    at_kink = np.isclose(y, 1 / 3)
+    sides = vorticity(fields)[..., 0]
+    expected = [np.mean(sides[fields.cells == node]) for node in range(len(fields.points))]
+    np.testing.assert_allclose(nodal_vorticity(fields)[:, 0], expected, atol=1e-13)
+    assert np.abs(nodal_vorticity(fields)[at_kink, 0]).max() < 0.5
 
 
 def test_poiseuille_flow_has_a_vorticity_linear_across_the_channel() -> None:
     fields = square(3)
     y = fields.points[:, 1]
     fields = with_velocity(fields, np.stack([y * (1.0 - y), 0.0 * y], axis=1))
-    np.testing.assert_allclose(vorticity(fields), (2.0 * y - 1.0)[fields.cells], atol=1e-13)
+    np.testing.assert_allclose(vorticity(fields)[..., 0], (2.0 * y - 1.0)[fields.cells], atol=1e-13)
 
 
 def test_a_linear_field_is_sampled_exactly_and_nothing_outside_the_mesh() -> None:
@@ -87,6 +100,17 @@ def test_a_quadratic_field_is_sampled_between_its_nodes_with_the_second_order() 
         u, v = section.fields.points.T
         errors.append(np.abs(section.image(u**2 - 3.0 * u * v, grid) - (x**2 - 3.0 * x * y)).max())
     assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
+
+
+def test_the_area_of_values_is_that_of_the_picture() -> None:
+    fields = square(3, (2.0, 0.5))
+    for quantity in QUANTITIES:
+        values, areas = moment(fields).section.spread(quantity)
+        assert values.shape == areas.shape
+        assert areas.sum() == pytest.approx(1.0)
+    rising = Fields(fields.points, fields.cells, fields.velocity, fields.points[:, 0])
+    values, areas = moment(rising).section.spread("pressure")
+    assert values @ areas == pytest.approx(1.0)
 
 
 def test_a_slice_through_a_tetrahedron_is_sampled_in_its_plane() -> None:
@@ -116,14 +140,15 @@ def swirl(size: tuple[float, float]) -> Moment:
 @pytest.mark.parametrize("size", [(1.0, 30.0), (30.0, 1.0), (1.0, 1.0)])
 def test_pictures_of_any_domain_fit_on_a_page(size: tuple[float, float]) -> None:
     shown = [swirl(size)] * 4
-    for figure in (speed_picture(shown), streamline_picture(shown), vorticity_picture(shown), pressure_picture(shown)):
+    figures = [flow_picture(shown, Scale(quantity, 0.0, 1.0, 1.0)) for quantity in QUANTITIES]
+    for figure in (*figures, streamline_picture(shown, SPEED), whole_mesh_picture(shown[0], SPEED)):
         assert np.all(np.array(figure.get_size_inches()) < 18.0)
-    assert np.all(np.array(whole_mesh_picture(shown[0]).get_size_inches()) < 18.0)
 
 
 def test_streamlines_go_along_the_flow_and_there_are_none_at_rest() -> None:
     def lines(moment: Moment) -> list[FloatArray]:
-        return [path for one in streamline_picture([moment]).axes[0].collections[1:] for path in one.get_segments()]
+        drawn = streamline_picture([moment], SPEED).axes[0].collections[1:]
+        return [path for one in drawn for path in one.get_segments()]
 
     turning = swirl((1.0, 1.0))
     ends = np.array([[path[0], path[-1]] for path in lines(turning)])
@@ -133,3 +158,23 @@ def test_streamlines_go_along_the_flow_and_there_are_none_at_rest() -> None:
         radius[:, 0], radius[:, 1], atol=0.005
     )  # circles; lines are bent to parts of the picture
     assert lines(moment(square(4))) == []
+
+
+def test_bodies_are_drawn_apart_from_what_is_outside() -> None:
+    """A body over the edge of a plane field, of which a quarter of the picture has none."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 60)
+    circle = 0.2 * np.stack([np.cos(angle), np.sin(angle)], axis=1) + [1.0, 0.5]
+    figure = flow_picture([replace(swirl((1.0, 1.0)), outlines=(circle,))], SPEED)
+    axes = figure.axes[0]
+    axes.set_xlim(0.5, 1.5)
+    figure.canvas.draw()
+    shown = np.asarray(figure.canvas.buffer_rgba())[..., :3]
+
+    def colour(x: float, y: float) -> set[str]:
+        column, row = axes.transData.transform((x, y)).round().astype(int)
+        near = shown[len(shown) - row - 12 : len(shown) - row + 12, column - 12 : column + 12].reshape(-1, 3)
+        return {to_hex(one / 255.0) for one in near}
+
+    assert colour(1.1, 0.5) == {BODY} == colour(0.9, 0.5)
+    assert {OUTSIDE, HATCH} <= colour(1.35, 0.5)
+    assert BODY not in colour(1.35, 0.5) | colour(0.6, 0.5)

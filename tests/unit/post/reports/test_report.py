@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import sys
+from datetime import UTC, datetime
 from html import unescape
 from importlib.util import find_spec
 from pathlib import Path
@@ -23,6 +25,7 @@ from rigidfluid.core.run.summary import FLOWS
 from rigidfluid.errors import OutputError, PluginError
 from rigidfluid.post.movies import Look, movie
 from rigidfluid.post.reports import report
+from rigidfluid.post.reports.results import read_results
 
 PNG = b"\x89PNG\r\n"
 FIELD_PICTURES = {
@@ -30,7 +33,7 @@ FIELD_PICTURES = {
     for name in ("speed_field", "streamlines", "vorticity", "pressure", "whole_mesh", "mesh", "smallest_gap")
 }
 CURVES = {"position", "speed", "gap", "force", "energy"}
-OF_A_FALL = CURVES | {"coefficients", "step"}
+OF_A_FALL = CURVES | {"step"}
 
 
 @pytest.fixture(scope="module")
@@ -85,6 +88,43 @@ def test_the_page_needs_no_other_file(fall: Path, written: list[Path]) -> None:
 def test_the_same_run_gives_the_same_files(fall: Path, written: list[Path]) -> None:
     first = {path: path.read_bytes() for path in written}
     assert {path: path.read_bytes() for path in report(fall)} == first
+
+
+def test_the_contents_and_the_data_of_a_page_are_there(fall: Path, written: list[Path]) -> None:
+    page = written[-1].read_text(encoding="utf-8")
+    contents = re.search("<nav>(.*)</nav>", page)
+    assert contents is not None
+    links = dict(re.findall(r'<a href="#([^"]+)">([^<]+)</a>', contents[1]))
+    assert {"Pictures", "Energy balance", "Cost", "Data", "Scene", "Versions"} == set(links.values())
+    assert links == dict(re.findall(r'<h2 id="([^"]+)">([^<]+)</h2>', page))
+    files = set(re.findall(r'href="([^"#]+)"', page))
+    assert {"bodies.csv", "energy.csv", "fields.pvd", "state.h5", "summary.json"} <= files
+    assert all((fall / name).is_file() for name in files)
+    day = datetime.fromtimestamp((fall / "bodies.csv").stat().st_mtime, UTC)
+    assert f"Results of {day:%Y-%m-%d %H:%M} UTC" in page
+
+
+@pytest.mark.parametrize("torn", ["bodies", "energy", "steps"])
+def test_a_run_that_goes_on_has_a_report(copy: Path, torn: str) -> None:
+    """No summary yet, a row half written, in one table before the others, and contacts of a later state."""
+    (copy / "summary.json").unlink()
+    whole = read_results(copy)
+    table = copy / f"{torn}.csv"
+    table.write_bytes(table.read_bytes()[:-7])
+    columns = (copy / "contacts.csv").read_text().split(",")
+    later = ["9.0", "999", "disk", "bottom", *["0.0"] * (len(columns) - 4)]
+    with (copy / "contacts.csv").open("a") as file:
+        file.write(",".join(later) + "\n")
+    results = read_results(copy)
+    states = len(whole.time) - (torn != "steps")
+    assert len(results.time) == len(results.energy["time"]) == len(results.contact_counts) == states
+    assert results.contact_counts.sum() == 0.0
+    np.testing.assert_array_equal(results.vectors("v"), whole.vectors("v")[:states])
+    page = unescape(report(copy)[-1].read_text(encoding="utf-8"))
+    assert f"goes on, or was stopped; resumed by --resume, at {results.time[-1]:.5g} of 0.03" in page
+    assert page.count("data:image/png;base64,") == len(FIELD_PICTURES | OF_A_FALL)
+    assert "Energy balance" not in page
+    assert "size_body = 0.08" in page
 
 
 def test_the_scene_on_the_page_is_a_scene(fall: Path, written: list[Path]) -> None:
@@ -148,7 +188,7 @@ def test_a_body_alone_has_no_gap_to_show(tmp_path: Path) -> None:
     assert not any(path.stem == "gap" for path in report(tmp_path))
 
 
-@pytest.mark.parametrize("name", ["summary.json", "bodies.csv", "energy.csv", "fields/000001.vtu"])
+@pytest.mark.parametrize("name", ["bodies.csv", "energy.csv", "fields/000001.vtu"])
 def test_missing_file_is_named(copy: Path, name: str) -> None:
     (copy / name).unlink()
     refused(copy, name, "--resume")
@@ -221,6 +261,7 @@ def test_meshio_reads_the_same_fields(tmp_path: Path, dimension: int) -> None:
     np.testing.assert_array_equal(read.cells_dict["triangle6" if dimension == 2 else "tetra10"], fields.cells)
     np.testing.assert_array_equal(read.point_data["velocity"][:, :dimension], fields.velocity)
     np.testing.assert_array_equal(read.point_data["pressure"], fields.pressure)
+    assert read.point_data["vorticity"].shape == (len(fields.points), *([] if dimension == 2 else [3]))
 
 
 def test_series_lists_the_output_times(fall: Path) -> None:

@@ -18,11 +18,11 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.facets import Facets
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import Fields
+from rigidfluid.core.output.cell_gradients import EDGES
 from rigidfluid.post.reports import report
 from rigidfluid.post.reports.bodies import cut, rotations
 from rigidfluid.post.reports.canvas import Canvas, Shell
 from rigidfluid.post.reports.coefficients import reference
-from rigidfluid.post.reports.flow import EDGES
 from rigidfluid.post.reports.narrowest import gap_middle
 from rigidfluid.post.reports.raster import Grid
 from rigidfluid.post.reports.results import Results, read_results
@@ -257,9 +257,7 @@ def test_a_report_of_a_3d_flow(wet: Path) -> None:
     page = (wet / "report.html").read_text(encoding="utf-8")
     assert "In the xz-plane through ball." in page
     results = read_results(wet)
-    by = reference(results)
-    assert by is not None
-    np.testing.assert_allclose(by.axes[1] @ plane_of_motion(results).normal, 0.0, atol=1e-12)
+    assert reference(results) is None
 
 
 @pytest.mark.parametrize(("arguments", "text"), [(["--follow", "nobody"], "nobody"), (["--plane", "zx"], "zx")])

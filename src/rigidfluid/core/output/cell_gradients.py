@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.curl import curl
 from rigidfluid.core.model.types import Fields
 
 EDGES = {3: ((0, 1), (1, 2), (0, 2)), 4: ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))}
 """Which corners each middle node is between, in VTK's order, by the number of corners."""
+
+_AT_ONCE = 20_000
+"""Cells whose gradients are in memory at a time."""
 
 
 def node_coordinates(count: int) -> FloatArray:
@@ -31,15 +37,20 @@ def velocity_gradients(fields: Fields) -> FloatArray:
     return np.asarray(transposed.swapaxes(2, 3))
 
 
-def vorticity(fields: Fields, normal: FloatArray | None = None) -> FloatArray:
-    """ω = ∇ × u at the nodes of each cell, (M, b), in 3D its component along ``normal`` (3,) [1/time]."""
-    gradient = velocity_gradients(fields)
-    if normal is None:
-        return np.asarray(gradient[..., 1, 0] - gradient[..., 0, 1])
-    axes = ((2, 1), (0, 2), (1, 0))
-    return np.asarray(
-        sum(n * (gradient[..., i, j] - gradient[..., j, i]) for n, (i, j) in zip(normal, axes, strict=True))
-    )
+def vorticity(fields: Fields) -> FloatArray:
+    """ω = ∇ × u at the nodes of each cell, (M, b, k), in 2D its one component [1/time]."""
+    return curl(velocity_gradients(fields))
+
+
+def nodal_vorticity(fields: Fields) -> FloatArray:
+    """ω at the nodes, (N, k), the mean over the cells around each, in 2D its one component [1/time]."""
+    count = len(fields.points)
+    around = np.bincount(fields.cells.ravel(), minlength=count)
+    total = np.zeros((count, 1 if fields.points.shape[1] == 2 else 3))
+    for start in range(0, len(fields.cells), _AT_ONCE):
+        some = replace(fields, cells=fields.cells[start : start + _AT_ONCE])
+        np.add.at(total, some.cells, vorticity(some))
+    return total / around[:, None]
 
 
 def _slopes(dimension: int) -> FloatArray:

@@ -1,0 +1,27 @@
+"""Colours of a quantity that are the same in all pictures of a run, in its report and in its movie."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rigidfluid.core.output.vtu import read_vtu
+from rigidfluid.post.reports.results import Results
+from rigidfluid.post.reports.scale import Quantity, Scale
+from rigidfluid.post.reports.section import Section
+from rigidfluid.post.reports.view_plane import ViewPlane
+
+_SAMPLED = 12
+"""Number of output times that fix the range of the colours."""
+
+
+def shared_scale(results: Results, quantity: Quantity, plane: ViewPlane, follow: int | None) -> Scale:
+    """Fit the scale to output times spread over the run: in 3D to slices through the body to ``follow`` by number, or
+    the first one."""
+    there = [(time, path) for time, path in results.series if path.exists()]
+    chosen = np.unique(np.linspace(0, len(there) - 1, _SAMPLED).round().astype(int))
+    found = []
+    for time, path in (there[i] for i in chosen):
+        through = results.vectors("")[results.state_at(time), follow or 0]
+        found.append(Section.cut(read_vtu(path), plane, through).spread(quantity))
+    values, areas = zip(*found, strict=True)
+    return Scale.fit(quantity, values, areas)
