@@ -8,7 +8,7 @@ from typing import Self
 import numpy as np
 from scipy import sparse
 
-from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.dynamics import block_diagonal
 from rigidfluid.core.mechanics.own_motions import OwnMotions
 from rigidfluid.core.mechanics.rigid import rotate
@@ -56,9 +56,10 @@ class CoupledDynamics(OwnMotions):
         self.inverse_mass, self.inverse_inertia = self._blocks()
         self._friction = _Friction(len(load))
 
-    def vary_load(self, time: float) -> None:
-        """Let Φ grow linearly from now on, from its value before to its value after ``time``."""
-        change = self._model.modes.T @ self._lacking
+    def vary_load(self, time: float, varying: BoolArray) -> None:
+        """Let the components of Φ that are ``varying`` (N, d+k) grow linearly from now on, from their values before to
+        those after ``time``."""
+        change = self._model.modes.T @ np.where(varying.ravel()[self._model.velocities], self._lacking, 0.0)
         self._load, self._growth = self._load - change, change / time
 
     @property

@@ -16,7 +16,7 @@ from rigidfluid.core.contact.look_ahead import near_contacts
 from rigidfluid.core.contact.substep_path import SubstepPath
 from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.coupling.impulse_responses import updated_model
-from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.fluid_step import StepEnd, step_to
 from rigidfluid.core.mechanics.motions import (
     accelerations,
@@ -75,7 +75,7 @@ class FluidScheme(ABC):
             return undisturbed(system, pose, motions.twist, start + size)
         unlinked, near = self._motions(state, coupling), near_contacts(system, state, start, size)
         dynamics = system.motions.carry(system.joints.over(unlinked, start), start)
-        self._vary_load(unlinked, dynamics, near, size)
+        unlinked.vary_load(size, self._varying(state, dynamics, near, size))
         if system.implicit:
             path = implicit_coupled(system, system.law, dynamics, near, size)
         else:
@@ -130,9 +130,9 @@ class FluidScheme(ABC):
         """Weight and applied wrenches (c,) in a fluid without inertia, as all else of Φ is its drag; None in others."""
 
     @abstractmethod
-    def _vary_load(self, motions: CoupledDynamics, bodies: BodyDynamics, near: Contacts, size: float) -> None:
-        """Let Φ vary linearly in a step of this ``size`` [time], if the step resolves its contacts ``near`` or
-        the fluid has no inertia."""
+    def _varying(self, state: State, bodies: BodyDynamics, near: Contacts, size: float) -> BoolArray:
+        """Components of Φ (N, d+k) that vary linearly in a step of this ``size`` [time] with its contacts ``near``; the
+        others are constant."""
 
     @abstractmethod
     def _with_friction(self, path: BodyStep) -> BodyStep:

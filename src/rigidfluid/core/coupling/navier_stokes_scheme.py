@@ -7,12 +7,13 @@ from dataclasses import replace
 import numpy as np
 
 from rigidfluid.core.contact.body_step import BodyStep
+from rigidfluid.core.contact.contact_load import contact_load
 from rigidfluid.core.contact.substep_path import SubstepPath
 from rigidfluid.core.coupling.convection import turning
-from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.coupling.fluid_scheme import FluidScheme, expected_load_of, load_before
 from rigidfluid.core.coupling.stirring import impact_tick
-from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.reduced_model import Coupling, ReducedModel
 from rigidfluid.core.model.state import State
@@ -20,6 +21,10 @@ from rigidfluid.core.model.types import Contacts, Step
 
 RESOLVED = 8.0
 """Largest number of substeps with which a step resolves its contacts: Φ then varies linearly in it."""
+
+SLOW = 0.25
+"""Largest relative change of a contact force from its mean in the step before, in contacts that press slowly: Φ then
+varies linearly too, however stiff they are."""
 
 
 class NavierStokesScheme(FluidScheme):
@@ -36,11 +41,16 @@ class NavierStokesScheme(FluidScheme):
     def _known_load(self, state: State, coupling: Coupling) -> None:
         return None
 
-    def _vary_load(self, motions: CoupledDynamics, bodies: BodyDynamics, near: Contacts, size: float) -> None:
-        """Let Φ vary linearly where the step resolves its contacts."""
-        system = self._system
-        if system.law and size <= RESOLVED * SubstepPath(system, system.law, bodies, size).planned(near, size).substep:
-            motions.vary_load(size)
+    def _varying(self, state: State, bodies: BodyDynamics, near: Contacts, size: float) -> BoolArray:
+        """All where the step resolves its contacts, and those of motions whose contacts press slowly."""
+        system, law = self._system, self._system.law
+        if law is None or size <= RESOLVED * SubstepPath(system, law, bodies, size).planned(near, size).substep:
+            return np.ones_like(flat(state.motions.contact), dtype=bool)
+        force = np.zeros_like(state.motions.contact.force)
+        np.add.at(force, system.motions.carrier, contact_load(system, law, state.contacts, bodies).wrench.force)
+        change = np.linalg.norm(force - state.motions.contact.force, axis=1)
+        slow = change < SLOW * np.linalg.norm(force, axis=1)
+        return np.broadcast_to(slow[:, None], flat(state.motions.contact).shape)
 
     def _with_friction(self, path: BodyStep) -> BodyStep:
         return path

@@ -7,9 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from rigidfluid.core.contact.body_step import BodyStep
-from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.coupling.fluid_scheme import FluidScheme, components, load_before
-from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.mechanics.motions import outer_load
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.dynamics import BodyDynamics
@@ -36,9 +35,9 @@ class StokesScheme(FluidScheme):
         """Weight and applied wrenches."""
         return components(coupling.model, flat(outer_load(self._system, state)))
 
-    def _vary_load(self, motions: CoupledDynamics, bodies: BodyDynamics, near: Contacts, size: float) -> None:
-        """Let Φ vary linearly in all steps."""
-        motions.vary_load(size)
+    def _varying(self, state: State, bodies: BodyDynamics, near: Contacts, size: float) -> BoolArray:
+        """All, in all steps."""
+        return np.ones_like(flat(state.motions.contact), dtype=bool)
 
     def _with_friction(self, path: BodyStep) -> BodyStep:
         """The path with its friction as ``drag_loss``: it is known for certain."""

@@ -91,13 +91,14 @@ def resisted(load_before: FloatArray) -> CoupledDynamics:
 
 
 WEIGHT = RNG.normal(size=len(INSIDE))
+ALL = np.ones((BODIES, WIDTH), dtype=bool)
 
 
 def test_without_inertia_of_the_fluid_all_friction_is_known():
     """∫ (W - Φ + R (U - Uⁿ))·U dt = W·Δx + ∫ F·U dt - Δ(½ UᵀMU), less what Simpson's rule sees."""
     before, time, parts = 0.5 * LOAD, 0.3, 4000
     bodies = resisted(before)
-    bodies.vary_load(time)
+    bodies.vary_load(time, ALL)
     start, pushed, path = joined(TWIST).ravel()[INSIDE], flat_wrench()[INSIDE], 0.0
     for _ in range(parts):
         bodies.kick(WRENCH, 0.5 * time / parts)
@@ -233,7 +234,7 @@ def test_a_load_that_varies_gives_the_mean_of_its_ends_and_one_that_was_not_know
     before = np.where(np.arange(len(LOAD)) == 1, np.nan, -LOAD)
     coupling = coupling_of(model_of(MASS, 0.0 * FRICTION), LOAD, before)
     bodies = CoupledDynamics(START, TWIST, RATE, LINEAR, ANGULAR, coupling)
-    bodies.vary_load(0.2)
+    bodies.vary_load(0.2, ALL)
     for _ in range(4):
         bodies.kick(Wrench(0.0 * WRENCH.force, 0.0 * WRENCH.torque), 0.05)
     gained = (joined(bodies.twist) - joined(TWIST)).ravel()[INSIDE]
@@ -241,11 +242,23 @@ def test_a_load_that_varies_gives_the_mean_of_its_ends_and_one_that_was_not_know
     np.testing.assert_allclose(gained, 0.2 * np.linalg.solve(MASS, mean), rtol=1e-10)
 
 
+def test_components_that_do_not_vary_are_constant():
+    coupling = coupling_of(model_of(MASS, 0.0 * FRICTION), LOAD, -LOAD)
+    bodies = CoupledDynamics(START, TWIST, RATE, LINEAR, ANGULAR, coupling)
+    varying = np.zeros((BODIES, WIDTH), dtype=bool)
+    varying.flat[INSIDE[1]] = True
+    bodies.vary_load(0.2, varying)
+    bodies.kick(Wrench(0.0 * WRENCH.force, 0.0 * WRENCH.torque), 0.2)
+    gained = (joined(bodies.twist) - joined(TWIST)).ravel()[INSIDE]
+    mean = np.where(np.arange(len(LOAD)) == 1, 0.0, LOAD)
+    np.testing.assert_allclose(gained, 0.2 * np.linalg.solve(MASS, mean), rtol=1e-10)
+
+
 @pytest.mark.parametrize("time", [1e-3, 0.3, 500.0])
 def test_a_growing_load_is_followed_exactly_in_any_number_of_kicks(time):
     once, often = resisted(-0.5 * LOAD), resisted(-0.5 * LOAD)
     for bodies, parts in ((once, 1), (often, 40)):
-        bodies.vary_load(time)
+        bodies.vary_load(time, ALL)
         moved(bodies, time, parts)
     np.testing.assert_allclose(joined(once.twist), joined(often.twist), rtol=1e-9)
 
