@@ -1,41 +1,83 @@
-"""Make the gallery's own pictures, of quick scenes without a page: run each, and keep the last picture of its movie.
+"""Make the gallery's pictures: run each scene as far as its picture shows it, and draw that.
 
-``python docs/make_pictures.py NAME…`` makes those of some scenes, without names those of all.
+``python docs/make_pictures.py NAME…`` makes those of some scenes, without names those of all, which takes hours. Runs
+are kept in out/gallery, or the folder ``--runs``; one that is there is drawn as it is.
 """
 
-import sys
+from __future__ import annotations
+
+import argparse
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from PIL import Image
-from site_tools.gallery import OWN, SCENES
+from site_tools.gallery import DOCS, SCENES, picture
+from site_tools.scene_picture import Shown, scene_picture
 
 import rigidfluid
-from rigidfluid.post.movies.make_movie import Look, movie
 
-SETTINGS = {
-    "dry_bounce": ["time.end=0.03", "output.every=0.01", "time.step=1e-4"],
-    "hinged_pair": ["time.end=0.4", "output.every=0.1"],
-    "periodic_channel": ["time.end=1", "output.every=0.5"],
-    "several_laws": ["time.end=0.02", "output.every=0.01"],
-    "slider": ["time.end=0.09"],
-    "wavy_channel": ["time.end=0.5", "time.step=0.01"],
+PICTURES = {
+    "bounce_in_fluid": Shown("vorticity", (0.008, 0.016, 0.024, 0.032), settings=("output.every=0.004",)),
+    "dfg_2d2": Shown("vorticity", (3.0, 7.0)),
+    "dfg_2d3": Shown("vorticity", (2.0, 4.0, 6.0)),
+    "dfg_cylinder": Shown("streamlines", (15.0,), (-0.2, -0.2, 0.6, 0.21)),
+    "drafting_kissing_tumbling": Shown("vorticity", (0.06, 0.12, 0.18, 0.24)),
+    "dry_bounce": Shown("paths", (0.2,)),
+    "dumbbell_in_shear": Shown("space", (0.6, 4.8)),
+    "ellipse_in_channel": Shown("vorticity", (2.0, 4.0, 6.0, 8.0), (-0.1, -0.2, 0.1, 0.2)),
+    "ellipse_xia": Shown("vorticity", (0.2, 0.6, 1.0, 1.4), (-0.25, -0.25, 0.25, 0.85)),
+    "falling_disk": Shown("speed", (0.24, 0.5, 0.76, 1.0)),
+    "falling_disk_window": Shown("vorticity", (0.5, 1.0, 2.0, 3.0)),
+    "falling_ellipsoid": Shown("vorticity", (0.2, 0.4, 0.6, 0.8), (-0.5, -0.5, 0.5, 1.8)),
+    "falling_sphere": Shown("space", (1.0,)),
+    "fast_disk": Shown("vorticity", (0.1, 0.15, 0.2, 0.275)),
+    "hinged_pair": Shown("vorticity", (0.16, 0.3, 0.44, 0.6)),
+    "hundred_disks": Shown("speed", (0.5, 1.5, 3.0)),
+    "hundred_spheres": Shown("space", (0.4,)),
+    "insertion_2d": Shown("streamlines", (0.1,)),
+    "insertion_3d": Shown("space", (0.1,)),
+    "many_bodies_3d": Shown("space", (0.6,)),
+    "periodic_channel": Shown("streamlines", (0.5, 2.5)),
+    "rebound": Shown("vorticity", (0.006, 0.012, 0.018, 0.03), settings=("output.every=0.006",)),
+    "settling_cylinder": Shown("vorticity", (3.0, 6.0, 9.0, 12.0), (-2.0, -2.0, 2.0, 8.0)),
+    "several_laws": Shown("speed", (0.01, 0.02, 0.03, 0.04)),
+    "slider": Shown("speed", (0.03, 0.06, 0.09, 0.15)),
+    "squeezed_film": Shown("mesh", (0.01,), (-1.5, -1.1, 1.5, 1.3), plane="xz"),
+    "stenosis": Shown("speed", (0.002, 0.0054, 0.0068)),
+    "swimmer": Shown("streamlines", (1.0, 3.0)),
+    "swimmer_3d": Shown("streamlines", (1.0,), (-8.0, -8.0, 20.0, 8.0)),
+    "swimmer_near_wall": Shown("streamlines", (400.0, 1200.0)),
+    "ten_cate_e3": Shown("space", (1.0,)),
+    "three_swimmers": Shown("streamlines", (8.0, 40.0)),
+    "two_disks": Shown("vorticity", (1.0, 2.0, 3.0, 4.0)),
+    "two_spheres": Shown("mesh", (0.01,), (-1.6, -0.55, 1.6, 2.65)),
+    "vortex_induced": Shown("vorticity", (150.0,), (-3.0, -4.0, 13.0, 4.0)),
+    "wavy_channel": Shown("speed", (1.0, 3.0)),
 }
-"""Scenes, and what makes them quicker than they are shipped."""
 
 
-def draw(name: str) -> Path:
-    """Run a scene for a while, and write its picture to docs/pictures."""
-    with TemporaryDirectory() as folder:
-        out = Path(folder) / name
-        rigidfluid.run(rigidfluid.load_scene(SCENES / f"{name}.toml", SETTINGS[name]), out)
-        with Image.open(movie(out, out / "movie.gif", Look(longer=400))) as frames:
-            frames.seek(frames.n_frames - 1)
-            OWN.mkdir(exist_ok=True)
-            frames.convert("RGB").quantize(128).save(OWN / f"{name}.png", optimize=True)
-    return OWN / f"{name}.png"
+def draw(name: str, runs: Path) -> Path:
+    """Write a scene's picture to docs/pictures; its run is made where it is not in ``runs`` yet."""
+    shown, folder = PICTURES[name], runs / name
+    if not (folder / "summary.json").exists():
+        settings = (f"time.end={shown.times[-1]}", *shown.settings)
+        rigidfluid.run(rigidfluid.load_scene(SCENES / f"{name}.toml", settings), folder)
+    path = picture(name)
+    scene_picture(folder, shown).savefig(path, dpi=130, metadata={"Software": None})
+    with Image.open(path) as image:
+        small = image.convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=3)
+    small.save(path, optimize=True)
+    return path
+
+
+def main() -> None:
+    """Take scenes and the folder of runs from the command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("name", nargs="*", metavar="NAME")
+    parser.add_argument("--runs", type=Path, default=DOCS.parent / "out" / "gallery")
+    options = parser.parse_args()
+    for name in options.name or PICTURES:
+        print(draw(name, options.runs))
 
 
 if __name__ == "__main__":
-    for scene in sys.argv[1:] or SETTINGS:
-        print(draw(scene))
+    main()
