@@ -81,6 +81,7 @@ def contact_rows(rows: Sequence[Row]) -> Iterator[Sequence[str]]:
 def page(kept: dict[str, Any]) -> str:
     """All that is kept."""
     steps, model, memory = kept["steps"], kept["model"], kept["memory"]
+    meshing = Line.through(memory["alone"], "seconds")
     share, whole = (Line.through(memory[name], "bytes") for name in ("shared", "alone"))
     constants = Constants(*(model[name] for name in ("seconds", "sums", "rounds", "bytes")))
     return PAGE.format(
@@ -106,8 +107,12 @@ def page(kept: dict[str, Any]) -> str:
         foretold="\n".join(model_lines(constants, model["latency"], model["bandwidth"])),
         memory=memory,
         share=share,
+        base=1e-9 * share.start,
+        mesher=1e-9 * whole.start,
         whole=whole,
-        mesh_micro=1e6 * Line.through(memory["alone"], "seconds").slope,
+        mesh_micro=1e6 * meshing.slope,
+        mesh_hours=meshing.at(1e8) / 3600.0,
+        mesh_memory=1e-9 * whole.at(1e8),
         held="\n".join(memory_lines(share, whole)),
     )
 
@@ -175,19 +180,21 @@ Seconds a step, and the speed-up over one process, as the model has it:
 
 {foretold}
 
-Memory of a process is that of its share, M(N, p) = b + s N/p, and the root makes the whole mesh before: b' + g N. Measured on
-{memory[made]} by `mpirun -n 2 python benchmarks/memory_model.py` with 1.2 0.3 and 0.58 0.11, and with 0.4 0.075 and
-0.25 0.047 and `--steps 0` on one process: b = {share.start:.2g} bytes and s = {share.slope:,.0f} bytes an unknown, up to
-{memory[shared][1][unknowns]:,} unknowns a process; b' = {whole.start:.2g} bytes and g = {whole.slope:,.0f} bytes, up to
+The memory of a process is that of its share, M(N, p) = b + s N/p; before, the root makes the whole mesh, with b' + g N.
+Measured on {memory[made]} by `mpirun -n 2 python benchmarks/memory_model.py` with 1.2 0.3 and 0.58 0.11: b = {base:.2f} GB and
+s = {share.slope:,.0f} bytes an unknown, up to {memory[shared][1][unknowns]:,} unknowns a process; by the same on one process with
+0.4 0.075, 0.25 0.047 and `--steps 0`: b' = {mesher:.2f} GB and g = {whole.slope:,.0f} bytes, up to
 {memory[alone][1][unknowns]:,} unknowns. GB of a process, and of the root while it makes the mesh, as the model has it:
 
 {held}
 
-A mesh takes the root {mesh_micro:.0f} µs CPU an unknown: {mesh_micro:.0f} s for a million, and the others wait. At 100 million
-unknowns that, and the root's memory, say no before the steps do. The model extrapolates by a factor of hundreds in processes. It leaves out
-coarse levels of multigrid, more iterations with more parts, unequal parts, carrying the fluid over to a new mesh, and that
-cores of a machine share its memory's bandwidth: where all of them are in use, c may be twice as large or more. Measure your own
-machine by the same commands before you plan with it.
+A mesh takes the root {mesh_micro:.0f} µs CPU an unknown, {mesh_micro:.0f} s for a million, while the others wait. At 100 million unknowns
+that is {mesh_hours:.1f} hours for each new mesh, and {mesh_memory:.0f} GB on one machine: these bound such a run, not its steps.
+
+The model carries constants of two processes to hundreds. It leaves out coarse levels of multigrid, more iterations with
+more parts, unequal parts, the fluid's way to a new mesh, and that cores of a machine
+[share its memory's bandwidth](https://petsc.org/release/manual/performance/), which bounds PETSc's steps where all of them are
+in use. Measure your own machine by the same commands before you plan with it.
 """
 
 

@@ -1,4 +1,4 @@
-"""Tries what rigidfluid takes of DOLFINx's installation, on several processes: mpirun -n 2 python3 packaging/check.py."""
+"""Tries what rigidfluid takes of DOLFINx's installation: mpirun -n 2 python3 packaging/check.py."""
 
 from __future__ import annotations
 
