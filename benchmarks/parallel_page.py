@@ -180,21 +180,23 @@ Seconds a step, and the speed-up over one process, as the model has it:
 
 {foretold}
 
-The memory of a process is that of its share, M(N, p) = b + s N/p; before, the root makes the whole mesh, with b' + g N.
-Measured on {memory[made]} by `mpirun -n 2 python benchmarks/memory_model.py` with 1.2 0.3 and 0.58 0.11: b = {base:.2f} GB and
-s = {share.slope:,.0f} bytes an unknown, up to {memory[shared][1][unknowns]:,} unknowns a process; by the same on one process with
-0.4 0.075, 0.25 0.047 and `--steps 0`: b' = {mesher:.2f} GB and g = {whole.slope:,.0f} bytes, up to
-{memory[alone][1][unknowns]:,} unknowns. GB of a process, and of the root while it makes the mesh, as the model has it:
+The memory of a process is that of its share, M(N, p) = b + s N/p; before, the root makes the whole mesh, with b' + g
+N. Measured on {memory[made]} by `mpirun -n 2 python benchmarks/memory_model.py` with 1.2 0.3 and 0.58 0.11: b =
+{base:.2f} GB and s = {share.slope:,.0f} bytes an unknown, up to {memory[shared][1][unknowns]:,} unknowns a process;
+by the same on one process with 0.4 0.075, 0.25 0.047 and `--steps 0`: b' = {mesher:.2f} GB and g = {whole.slope:,.0f}
+bytes, up to {memory[alone][1][unknowns]:,} unknowns. GB of a process, and of the root while it makes the mesh, as the
+model has it:
 
 {held}
 
-A mesh takes the root {mesh_micro:.0f} µs CPU an unknown, {mesh_micro:.0f} s for a million, while the others wait. At 100 million unknowns
-that is {mesh_hours:.1f} hours for each new mesh, and {mesh_memory:.0f} GB on one machine: these bound such a run, not its steps.
+A mesh takes the root {mesh_micro:.0f} µs CPU an unknown, {mesh_micro:.0f} s for a million, while the others wait. At
+100 million unknowns that is {mesh_hours:.1f} hours for each new mesh, and {mesh_memory:.0f} GB on one machine: these
+bound such a run, not its steps.
 
-The model carries constants of two processes to hundreds. It leaves out coarse levels of multigrid, more iterations with
-more parts, unequal parts, the fluid's way to a new mesh, and that cores of a machine
-[share its memory's bandwidth](https://petsc.org/release/manual/performance/), which bounds PETSc's steps where all of them are
-in use. Measure your own machine by the same commands before you plan with it.
+The model carries constants of two processes to hundreds. It leaves out coarse levels of multigrid, more iterations
+with more parts, unequal parts, the fluid's way to a new mesh, and that cores of a machine [share its memory's
+bandwidth](https://petsc.org/release/manual/performance/), which bounds PETSc's steps where all of them are in use.
+Measure your own machine by the same commands before you plan with it.
 """
 
 

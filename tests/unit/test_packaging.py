@@ -63,7 +63,7 @@ def test_images_get_the_same_files_and_they_are_there() -> None:
 STUBS = {
     # As a queue that sends SIGTERM once a checkpoint is there, unless it has done so before.
     "srun": """#!/bin/bash
-        echo "threads $OMP_NUM_THREADS" >>calls
+        echo "threads $OMP_NUM_THREADS, last ${*: -1}" >>calls
         while [[ $1 == -* ]]; do shift; done
         "$PYTHON" -m "$@" &
         if [[ ! -e stopped ]]; then
@@ -94,10 +94,10 @@ def job(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 def test_a_job_is_queued_again_where_it_was_stopped_and_goes_on(tmp_path: Path) -> None:
     first = job(tmp_path, *SHORT)
     assert (first.returncode, "Interrupted" in first.stderr) == (0, True), first.stderr
-    assert (tmp_path / "calls").read_text().splitlines() == ["threads 1", "scontrol requeue 7"]
+    assert (tmp_path / "calls").read_text().splitlines() == ["threads 1, last time.end=0.02", "scontrol requeue 7"]
     second = job(tmp_path, *SHORT)
     assert second.returncode == 0, second.stderr
-    assert (tmp_path / "calls").read_text().splitlines()[2:] == ["threads 1"]
+    assert (tmp_path / "calls").read_text().splitlines()[2:] == ["threads 1, last --resume"]
     assert json.loads((tmp_path / "out" / "dry_bounce" / "summary.json").read_text())["status"] == "complete"
 
 
