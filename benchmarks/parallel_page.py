@@ -2,8 +2,8 @@
 
 python benchmarks/parallel_page.py --page docs/validation/parallel.md [--kept]
 
-With ``--kept`` nothing is measured. Detections and the constants of the model are kept as `shared_detection.py` and
-`scaling_model.py` print them.
+With ``--kept`` nothing is measured. Detections, the constants of the model and its memory are kept as
+`shared_detection.py`, `scaling_model.py` and `memory_model.py` print them.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from parallel import PAPER_SHARE, PAPER_SPEEDUP, parallel_rows
-from step_model import Constants, model_lines
+from step_model import Constants, Line, memory_lines, model_lines
 from written_page import write_page
 
 STORE = Path(__file__).with_name("parallel.json")
@@ -80,7 +80,9 @@ def contact_rows(rows: Sequence[Row]) -> Iterator[Sequence[str]]:
 
 def page(kept: dict[str, Any]) -> str:
     """All that is kept."""
-    steps, model = kept["steps"], kept["model"]
+    steps, model, memory = kept["steps"], kept["model"], kept["memory"]
+    meshing = Line.through(memory["alone"], "seconds")
+    share, whole = (Line.through(memory[name], "bytes") for name in ("shared", "alone"))
     constants = Constants(*(model[name] for name in ("seconds", "sums", "rounds", "bytes")))
     return PAGE.format(
         made=steps["made"],
@@ -103,6 +105,15 @@ def page(kept: dict[str, Any]) -> str:
         latency=1e6 * model["latency"],
         bandwidth=1e-9 * model["bandwidth"],
         foretold="\n".join(model_lines(constants, model["latency"], model["bandwidth"])),
+        memory=memory,
+        share=share,
+        base=1e-9 * share.start,
+        mesher=1e-9 * whole.start,
+        whole=whole,
+        mesh_micro=1e6 * meshing.slope,
+        mesh_hours=meshing.at(1e8) / 3600.0,
+        mesh_memory=1e-9 * whole.at(1e8),
+        held="\n".join(memory_lines(share, whole)),
     )
 
 
@@ -164,13 +175,28 @@ asks how the bodies answer to impulses.
 
 Measured a step: c = {micro:.0f} µs CPU an unknown, with what the two processes wait for each other; r = {model[sums]}
 global sums; m = {model[rounds]} exchanges between neighbours; v = {kilo:.0f} kB. Assumed of the network: latency
-α = {latency:.0f} µs, bandwidth β = {bandwidth:.0f} GB/s. Seconds a step, and the speed-up over one process, as the
-model has it:
+α = {latency:.0f} µs and bandwidth β = {bandwidth:.0f} GB/s, {model[network]}.
+Seconds a step, and the speed-up over one process, as the model has it:
 
 {foretold}
 
-It leaves out what is not shared out (one process makes all meshes), coarse levels of multigrid, unequal parts, and that
-cores of a machine share its memory's bandwidth.
+The memory of a process is that of its share, M(N, p) = b + s N/p; before, the root makes the whole mesh, with b' + g
+N. Measured on {memory[made]} by `mpirun -n 2 python benchmarks/memory_model.py` with 1.2 0.3 and 0.58 0.11: b =
+{base:.2f} GB and s = {share.slope:,.0f} bytes an unknown, up to {memory[shared][1][unknowns]:,} unknowns a process;
+by the same on one process with 0.4 0.075, 0.25 0.047 and `--steps 0`: b' = {mesher:.2f} GB and g = {whole.slope:,.0f}
+bytes, up to {memory[alone][1][unknowns]:,} unknowns. GB of a process, and of the root while it makes the mesh, as the
+model has it:
+
+{held}
+
+A mesh takes the root {mesh_micro:.0f} µs CPU an unknown, {mesh_micro:.0f} s for a million, while the others wait. At
+100 million unknowns that is {mesh_hours:.1f} hours for each new mesh, and {mesh_memory:.0f} GB on one machine: these
+bound such a run, not its steps.
+
+The model carries constants of two processes to hundreds. It leaves out coarse levels of multigrid, more iterations
+with more parts, unequal parts, the fluid's way to a new mesh, and that cores of a machine [share its memory's
+bandwidth](https://petsc.org/release/manual/performance/), which bounds PETSc's steps where all of them are in use.
+Measure your own machine by the same commands before you plan with it.
 """
 
 

@@ -51,6 +51,16 @@ def test_the_model_of_a_step_has_its_terms():
         assert found.step(8000, 8, 1e-3, 1e6) == pytest.approx(2e-2 + 1e-3 * (700 * 3 + 300) + 1e4 * 100 / 1e6)
 
 
+def test_the_memory_of_a_process_is_that_of_its_share_and_the_root_has_the_whole_mesh():
+    with benchmark("step_model") as script:
+        rows = [{"unknowns": 1000, "bytes": 3e8}, {"unknowns": 3000, "bytes": 5e8}]
+        share = script.Line.through(rows, "bytes")
+        assert (share.start, share.slope) == pytest.approx((2e8, 1e5))
+        assert share.at(2000) == pytest.approx(4e8)
+        _, _, line, *_ = script.memory_lines(share, script.Line(1e9, 500.0))
+        assert line.startswith("| 1,000,000 | 50, 1.5 | 6.5, 1.5 |")
+
+
 def has_dolfinx() -> bool:
     try:
         Registry.load().get(FLUID_BACKEND, "dolfinx")

@@ -10,6 +10,7 @@ from traceback import walk_tb
 from types import FunctionType
 from typing import Any, TypeVar
 
+from rigidfluid.core.geometry.interrupts import is_interrupt
 from rigidfluid.core.geometry.value_types import refuse_other_types
 from rigidfluid.core.geometry.wrong import Wrong
 from rigidfluid.errors import PluginError, RigidfluidError, StepRejected
@@ -140,9 +141,9 @@ def _blamed(cls: type, key: str) -> Iterator[None]:
 def told_of(part: Any, key: str, error: BaseException) -> RigidfluidError | KeyboardInterrupt:
     """Error of a part, or its class, that names its method or attribute ``key`` and what that has raised or given.
 
-    An interrupt that comes within compiled code is an interrupt, though Python makes a SystemError of it.
+    An interrupt that came within compiled code is given as one.
     """
-    if isinstance(error, SystemError) and isinstance(error.__cause__, KeyboardInterrupt):
+    if is_interrupt(error):
         return KeyboardInterrupt()
     subject = f"{named(part if isinstance(part, type) else type(part))}, {key}"
     if isinstance(error, Wrong):

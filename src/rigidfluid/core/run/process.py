@@ -17,6 +17,8 @@ from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING
 
+from rigidfluid.core.geometry.interrupts import is_interrupt
+
 if TYPE_CHECKING:
     from rigidfluid.core.model.ranks import Ranks
 
@@ -127,7 +129,7 @@ def plain_interrupts() -> Iterator[None]:
     try:
         yield
     except SystemError as error:
-        if isinstance(error.__cause__, KeyboardInterrupt):
+        if is_interrupt(error):
             raise KeyboardInterrupt from error
         raise
 

@@ -23,7 +23,22 @@ class Raising(SphereDetector):
         raise SystemError("returned a result with an exception set") from self.cause
 
 
-@pytest.mark.parametrize(("cause", "told"), [(KeyboardInterrupt(), KeyboardInterrupt), (ValueError(), PluginError)])
+def through_another(cause: BaseException) -> SystemError:
+    """Of compiled code that was called by compiled code, as while a loop is loaded from the cache."""
+    error = SystemError("returned a result with an exception set")
+    error.__cause__ = cause
+    return error
+
+
+@pytest.mark.parametrize(
+    ("cause", "told"),
+    [
+        (KeyboardInterrupt(), KeyboardInterrupt),
+        (through_another(through_another(KeyboardInterrupt())), KeyboardInterrupt),
+        (ValueError(), PluginError),
+        (through_another(ValueError()), PluginError),
+    ],
+)
 def test_an_interrupt_within_compiled_code_is_no_fault_of_the_part(
     cause: BaseException, told: type[BaseException]
 ) -> None:

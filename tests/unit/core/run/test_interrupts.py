@@ -30,7 +30,14 @@ def test_an_interrupt_in_a_finaliser_comes_later(monkeypatch: pytest.MonkeyPatch
     assert sys.unraisablehook == told.append
 
 
-@pytest.mark.parametrize(("cause", "told"), [(KeyboardInterrupt(), KeyboardInterrupt), (ValueError(), SystemError)])
+TWICE = SystemError("returned a result with an exception set")
+TWICE.__cause__ = KeyboardInterrupt()
+
+
+@pytest.mark.parametrize(
+    ("cause", "told"),
+    [(KeyboardInterrupt(), KeyboardInterrupt), (TWICE, KeyboardInterrupt), (ValueError(), SystemError)],
+)
 def test_an_interrupt_within_compiled_code_is_one(cause: BaseException, told: type[BaseException]) -> None:
     with pytest.raises(told), remembered_interrupt(ALONE):
         raise SystemError("returned a result with an exception set") from cause
