@@ -127,13 +127,6 @@ def settling(step: float) -> Scene:
     return in_fluid(repulsion("substeps", 1e-10), disk, end=0.4, step=step)
 
 
-def let_down(step: float, stepping: Stepping = "substeps") -> Scene:
-    """A viscous fluid lets a disk down on a stiff floor, in some ten steps of 5 ms or less."""
-    disk, mesh = heavy(0.33, 0.24, density=1.5), {"size": 0.08}
-    law, fluid = repulsion(stepping, 1e-7, range=0.07), {"viscosity": 0.5}
-    return in_fluid(law, disk, end=0.3, step=step, upper=(0.6, 0.6), fluid=fluid, mesh=mesh)
-
-
 STOKES: Table = {"model": "stokes", "viscosity": 0.3}
 
 

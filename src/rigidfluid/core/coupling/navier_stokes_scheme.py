@@ -22,7 +22,7 @@ from rigidfluid.core.model.types import Contacts, Step
 RESOLVED = 8.0
 """Largest number of substeps with which a step resolves its contacts: Φ then varies linearly in it."""
 
-SLOW = 0.25
+SLOW = 0.1
 """Largest relative change of a contact force from its mean in the step before, in contacts that press slowly: Φ then
 varies linearly too, however stiff they are."""
 

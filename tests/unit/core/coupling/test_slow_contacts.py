@@ -6,12 +6,12 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-import fluid_contacts as scenes
 import numpy as np
 import pytest
-from fluid_contacts import Stepping
+from fluid_contacts import SCENES
 from linked_bodies import masses, placed, split
 
+from rigidfluid.core.case.load import load_scene
 from rigidfluid.core.contact.contact_load import ContactLoad
 from rigidfluid.core.contact.substep_path import SubstepPath
 from rigidfluid.core.coupling import navier_stokes_scheme
@@ -45,7 +45,7 @@ def varying(monkeypatch: pytest.MonkeyPatch, now: list[float], before: list[floa
 
 
 def test_the_load_varies_for_bodies_that_are_pressed_slowly(monkeypatch):
-    now, before = [1.0, 1.0, 1.0, 0.0, 0.0], [0.8, 1.2, 0.7, 0.0, 1.0]
+    now, before = [1.0, 1.0, 1.0, 0.0, 0.0], [0.92, 1.08, 0.85, 0.0, 1.0]
     assert varying(monkeypatch, now, before, STEP / 32) == [True, True, False, False, False]
 
 
@@ -53,11 +53,10 @@ def test_the_load_varies_for_all_where_the_step_resolves_its_contacts(monkeypatc
     assert varying(monkeypatch, [0.0, 1.0], [0.0, 0.0], STEP / RESOLVED) == [True, True]
 
 
-@pytest.mark.parametrize("stepping", ["substeps", "implicit"])
-def test_a_disk_let_down_on_a_stiff_floor_loses_next_to_nothing_on_its_path(tmp_path: Path, stepping: Stepping):
-    """With a constant load the path takes 1.6e-4, and contacts lose 4e-4 more."""
-    energy = run(scenes.let_down(0.005, stepping), tmp_path).energy
-    lost = np.diff(energy["residual_contacts"])
-    assert energy["contact"][-1] > 0.012
-    assert energy["path_friction"][-1] < 8e-5
-    assert lost[lost > 0.0].sum() < 1.2e-4
+@pytest.mark.long
+def test_disks_that_a_flow_presses_together_lose_little_at_their_contact(tmp_path: Path):
+    """In the throat of `stenosis`; with a load that is constant in a step it is 2.2 % of the energy at hand."""
+    scene = load_scene(SCENES / "stenosis.toml", ["time.end=0.0057", "output.every=0.0057"])
+    energy = run(scene, tmp_path).summary["energy"]
+    assert energy["largest_loss"] < 6e-3
+    assert energy["largest_creation"] < 3e-3
