@@ -50,6 +50,7 @@ def test_the_period_is_the_known_one():
     np.testing.assert_allclose(spin(turned), START, atol=1e-6)
 
 
+@pytest.mark.long
 def test_the_midpoint_rule_keeps_the_energy_over_a_large_turn():
     """Only where its equation is solved, which Newton's method does for turns that are no small change."""
     turned = UPRIGHT.copy()

@@ -25,6 +25,7 @@ def in_a_dish(dimension, number=2):
     return FluidDomain(bodies, pose, dish(1.0, dimension), [rim(number, dimension=dimension)]), sizes
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_cut_vertices_are_on_the_shapes_and_the_walls_facets_stay(dimension):
     around, sizes = in_a_dish(dimension)

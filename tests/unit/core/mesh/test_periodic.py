@@ -98,6 +98,7 @@ def test_facets_of_periodic_surfaces_are_not_halved() -> None:
     assert set(edges.ravel()) <= set(mesh.facets[mesh.markers == 0].ravel())
 
 
+@pytest.mark.long
 def test_a_pressure_drop_takes_a_ball_along_and_the_energy_balance_closes() -> None:
     """Through several meshes; of the fluid's density it goes nearly with the flow."""
     coarse, fine = (run(channel(time={"end": 1.8, "step": step})) for step in (0.04, 0.02))

@@ -68,6 +68,7 @@ class AboutThePoint(SizeField):
         return 0.02 + 0.2 * np.linalg.norm(points - (1.0, 1.0), axis=1)
 
 
+@pytest.mark.long
 def test_later_meshes_are_fine_where_the_fluid_turns_and_the_first_is_as_without() -> None:
     plain, followed = (Simulation(fall(*fields)) for fields in ((), ({"type": "vorticity", "size": 0.01},)))
     np.testing.assert_array_equal(plain.state.mesh.points, followed.state.mesh.points)
@@ -78,6 +79,7 @@ def test_later_meshes_are_fine_where_the_fluid_turns_and_the_first_is_as_without
     assert cells_near(followed, (1.0, 1.0), 0.5) < 1.5 * cells_near(plain, (1.0, 1.0), 0.5)
 
 
+@pytest.mark.long
 def test_a_higher_threshold_asks_for_fewer_cells() -> None:
     runs = [Simulation(fall({"type": "vorticity", "size": 0.01, "threshold": bound})) for bound in (0.1, 0.4)]
     for simulation in runs:

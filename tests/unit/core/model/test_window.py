@@ -145,6 +145,7 @@ def test_the_balance_of_energy_closes_where_a_wake_leaves_through_the_end() -> N
     assert abs(residual) < 2e-3 * gravity
 
 
+@pytest.mark.long
 def test_a_disk_falls_as_in_the_whole_channel() -> None:
     part, whole = (
         rigidfluid.run(scene(window, time={"end": 0.6})) for window in (WINDOW | {"ahead": 2.0, "behind": 2.0}, None)

@@ -148,6 +148,7 @@ def test_a_finished_run_can_be_taken_further(scene, tmp_path):
     assert resumed.records == rigidfluid.run(falling_disk(**longer)).records
 
 
+@pytest.mark.long
 def test_a_run_that_gets_stuck_says_where_and_keeps_what_it_has(tmp_path):
     """A heavy disk whose floor is far too weak to stop it."""
     heavy = {**SHORT, "time": {"step": 0.004, "end": 0.1}, "body": {"density": 100.0, "position": [1.0, 0.3]}}

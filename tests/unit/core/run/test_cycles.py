@@ -63,6 +63,7 @@ def test_summary_and_report_have_the_cycles_of_a_run(tmp_path):
     assert (tmp_path / "report" / "mechanisms.png").exists()
 
 
+@pytest.mark.long
 def test_what_is_rigid_has_no_cycles():
     assert "cycles" not in rigidfluid.run(scene()).summary
 

@@ -183,6 +183,7 @@ def test_a_file_of_the_scene_that_has_changed(tmp_path: Path) -> None:
         resumed(0.03)
 
 
+@pytest.mark.long
 def test_a_file_of_the_scene_that_changes_during_the_run(tmp_path: Path) -> None:
     """What the run has read counts, and not what lies there at its checkpoints."""
     file, out = tmp_path / "body.stl", tmp_path / "out"

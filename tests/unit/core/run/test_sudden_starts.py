@@ -59,6 +59,7 @@ def test_what_the_start_leaves_is_put_to_it_and_falls_with_the_step() -> None:
     assert 0.0 < shares[1] < 0.6 * shares[0] < 0.006
 
 
+@pytest.mark.long
 def test_the_first_step_of_a_blade_takes_no_more_from_the_ledger_than_from_the_fluid() -> None:
     """Thrown at a slant. The layer on it has no thickness at first: by its dissipation there 18, 9, 4 and 2 % of the
     energy were called created."""

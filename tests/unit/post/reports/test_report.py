@@ -104,6 +104,7 @@ def test_the_contents_and_the_data_of_a_page_are_there(fall: Path, written: list
     assert f"Results of {day:%Y-%m-%d %H:%M} UTC" in page
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("torn", ["bodies", "energy", "steps"])
 def test_a_run_that_goes_on_has_a_report(copy: Path, torn: str) -> None:
     """No summary yet, a row half written, in one table before the others, and contacts of a later state."""

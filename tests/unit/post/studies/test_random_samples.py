@@ -74,6 +74,7 @@ def test_samples_follow_their_seed_and_more_of_them_begin_alike(more: str, tmp_p
     assert -20.0 <= min(gravity) < -17.0 < -13.0 < max(gravity) <= -10.0
 
 
+@pytest.mark.long
 def test_first_order_indices_of_a_free_fall_are_the_exact_ones(tmp_path: Path) -> None:
     """z = z0 + v t - g t²/2 is a sum, so that each part of the variance is that of a term, first-order and total."""
     path = falling_study(tmp_path, random_table(32, GRAVITY, SPEED, HEIGHT, more="indices = true\nseed = 1"))
