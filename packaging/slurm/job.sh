@@ -25,14 +25,15 @@ export OMP_NUM_THREADS=1 # or BLAS of all processes fights for the same cores
 mkdir -p "$out"
 resume=()
 [[ ! -e $out/state.h5 ]] || resume=(--resume)
-before=$(stat --format %Y "$out/state.h5" 2>/dev/null || echo 0)
+checkpoint_time() { stat --format %Y "$out/state.h5" 2>/dev/null || echo 0; }
+before=$(checkpoint_time)
 
 status=0
 "${launch[@]}" rigidfluid run "$scene" --out "$out" --set fluid.backend=dolfinx "$@" "${resume[@]}" || status=$?
 
 case $status in
 130 | 143) # interrupted: at a step, or while it started
-    if [[ $(stat --format %Y "$out/state.h5" 2>/dev/null || echo 0) == "$before" ]]; then
+    if [[ $(checkpoint_time) == "$before" ]]; then
         echo "job.sh: no checkpoint was written before the time limit; take a shorter output.every or a longer --time" >&2
         exit 1
     fi

@@ -33,7 +33,7 @@ class Described:
 
 
 def first_names(names: Sequence[str]) -> str:
-    """How many names there are, and the first of them."""
+    """Count of the names, and the first of them."""
     shown = ", ".join(names[:_MOST_NAMES]) + (", …" if len(names) > _MOST_NAMES else "")
     return f"{len(names)} ({shown})" if names else ""
 

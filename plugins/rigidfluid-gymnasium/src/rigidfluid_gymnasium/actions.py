@@ -1,4 +1,4 @@
-"""What an agent can do to a run: the interface of actions, and those on a body by name."""
+"""Actions of an agent on a run: their interface, and those on a body by name."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ class Bounded(ABC):
 
     @abstractmethod
     def length(self, dimension: int) -> int:
-        """How many numbers there are in so many dimensions of space."""
+        """Count of the numbers in so many dimensions of space."""
 
     @property
     def label(self) -> str:

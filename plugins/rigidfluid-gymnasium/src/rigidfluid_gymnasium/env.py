@@ -147,7 +147,7 @@ class FluidEnv(gym.Env[FloatArray, FloatArray]):
             action.act(episode.run, own, self._over)
 
     def _observation(self) -> tuple[FloatArray, dict[str, Any]]:
-        """What is seen now, and the information with it."""
+        """Present observation, and the information with it."""
         run = self._present.run
         observed, clipped = self._observations.clipped([one.read(run) for one in self.task.observations])
         return observed, {"time": run.time} | ({"clipped": clipped} if clipped else {})

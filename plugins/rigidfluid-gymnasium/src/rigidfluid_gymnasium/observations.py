@@ -1,4 +1,4 @@
-"""What an agent sees of a run: the interface of observations, and those of bodies, joints and the fluid."""
+"""Observations of a run by an agent: their interface, and those of bodies, joints and the fluid."""
 
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ class ObservationSpace:
         self.box = Box(low, high, dtype=np.float64)
 
     def clipped(self, values: Sequence[FloatArray]) -> tuple[FloatArray, list[str]]:
-        """What is read, as one array within the bounds, and the names of observations that were beyond them."""
+        """Values as one array within the bounds, and the names of observations that were beyond them."""
         whole = np.concatenate(values)
         inside = np.clip(whole, self.box.low, self.box.high)
         beyond = np.split(inside != whole, self._cuts)
@@ -65,5 +65,5 @@ class ObservationSpace:
 
 
 def _cuts(parts: Sequence[FloatArray]) -> list[int]:
-    """Where an array of these ``parts`` is cut."""
+    """Indices at which an array of these ``parts`` is cut."""
     return list(accumulate(len(part) for part in parts[:-1]))

@@ -1,4 +1,4 @@
-"""What an agent is to do, and in which scene."""
+"""Task of an agent, and the scene in which it acts."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ from rigidfluid.post.reports.pictures import (
 from rigidfluid.post.reports.results import Results, read_results
 from rigidfluid.post.reports.rotation_plot import rotation_plot, torque_plot, turning
 from rigidfluid.post.reports.scale import QUANTITIES
-from rigidfluid.post.reports.shared_scale import shared_scale
+from rigidfluid.post.reports.shared_scale import shared_scales
 from rigidfluid.post.reports.space import dry_space_picture, flow_space_picture
 from rigidfluid.post.reports.style import STYLE
 from rigidfluid.post.reports.view_plane import PlaneName, ViewPlane, view_plane
@@ -78,7 +78,7 @@ def _flow_pictures(results: Results, plane: ViewPlane, body: int | None) -> Iter
     raster, watched = ("png",), nearest_body(results) if body is None else body
     where = _slice_location(results, plane, watched)
     shown = [moment(results, output, plane, watched) for output in shown_outputs(results)]
-    speed, turns, pressure = (shared_scale(results, quantity, plane, body) for quantity in QUANTITIES)
+    speed, turns, pressure = shared_scales(results, QUANTITIES, plane, body)
     yield (
         "speed_field",
         f"Speed of the fluid. Bodies are grey, what is outside is hatched.{where}",

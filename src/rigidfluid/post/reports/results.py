@@ -183,7 +183,7 @@ def _table_by_state(folder: Path, name: str, system: System, count: int, *, comp
 
 
 def _contact_counts(folder: Path, dimension: int, steps: FloatArray) -> FloatArray:
-    """How many rows the table of contacts has for each of the ``steps`` (s,), which rise; there may be later ones."""
+    """Count of rows in the table of contacts for each of the ``steps`` (s,), which rise; there may be later ones."""
     path, names = folder / "contacts.csv", columns(dimension)["contacts"]
     rows = _rows(path, names, may_be_empty=True, complete=(folder / SUMMARY).exists())
     at_contacts = np.array([row[names.index("step")] for row in rows], dtype=float)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.output.vtu import read_vtu
 from rigidfluid.post.reports.results import Results
 from rigidfluid.post.reports.scale import Quantity, Scale
@@ -15,13 +18,24 @@ _SAMPLED = 12
 
 
 def shared_scale(results: Results, quantity: Quantity, plane: ViewPlane, follow: int | None) -> Scale:
-    """Fit the scale to output times spread over the run: in 3D to slices through the body to ``follow`` by number, or
-    the first one."""
+    """Fit the scale of one quantity, as `shared_scales` does."""
+    (scale,) = shared_scales(results, (quantity,), plane, follow)
+    return scale
+
+
+def shared_scales(
+    results: Results, quantities: Sequence[Quantity], plane: ViewPlane, follow: int | None
+) -> list[Scale]:
+    """Fit a scale for each quantity to output times spread over the run, each read once: in 3D to slices through the
+    body to ``follow`` by number, or the first one."""
     there = [(time, path) for time, path in results.series if path.exists()]
     chosen = np.unique(np.linspace(0, len(there) - 1, _SAMPLED).round().astype(int))
-    found = []
+    found: list[list[tuple[FloatArray, FloatArray]]] = [[] for _ in quantities]
     for time, path in (there[i] for i in chosen):
         through = results.vectors("")[results.state_at(time), follow or 0]
-        found.append(Section.cut(read_vtu(path), plane, through).spread(quantity))
-    values, areas = zip(*found, strict=True)
-    return Scale.fit(quantity, values, areas)
+        section = Section.cut(read_vtu(path), plane, through)
+        for quantity, spreads in zip(quantities, found, strict=True):
+            spreads.append(section.spread(quantity))
+    return [
+        Scale.fit(quantity, *zip(*spreads, strict=True)) for quantity, spreads in zip(quantities, found, strict=True)
+    ]

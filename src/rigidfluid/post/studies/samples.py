@@ -24,7 +24,7 @@ class RandomTable(StrictTable):
 
     @property
     def runs(self) -> int:
-        """How many combinations of values there are."""
+        """Count of the combinations of values."""
         return self.number * (block_length(len(self.parameters)) if self.indices else 1)
 
 
