@@ -18,6 +18,7 @@ class TestScikitFem(FluidBackendContract):
     options: ClassVar[Mapping[str, Any]] = {"tolerance": 1e-12}
 
 
+@pytest.mark.long
 class TestScikitFemByBlocks(FluidBackendContract):
     backend = ScikitFem
     options: ClassVar[Mapping[str, Any]] = {"tolerance": 1e-11, "solver": "schur"}

@@ -32,6 +32,7 @@ def require_held(attempt: Callable[[Any], str], hostile: Any) -> None:
     assert held(ending, repr(hostile)), ending
 
 
+@pytest.mark.long
 @bounded(80)
 @given(changed_scenes())
 def test_a_shipped_scene_with_changes(hostile: tuple[str, dict[str, Any]]) -> None:

@@ -63,7 +63,7 @@ def shifted(mesh):
         (random_ellipsoids, 2, 0, 2, False, NarrowBandDetector),
         (random_ellipsoids, 2, 1, 3, True, NarrowBandDetector),
         (random_ellipsoids, 2, 2, 5, False, FastMarchingDetector),
-        (random_ellipsoids, 3, 0, 3, False, NarrowBandDetector),
+        pytest.param(random_ellipsoids, 3, 0, 3, False, NarrowBandDetector, marks=pytest.mark.long),
         (star_bodies, 2, 7, 2, True, FastMarchingDetector),
         (star_bodies, 2, 7, 5, True, NarrowBandDetector),
         (star_bodies, 3, 7, 2, False, NarrowBandDetector),

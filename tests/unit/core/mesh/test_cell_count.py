@@ -87,6 +87,7 @@ def test_scenes_have_the_cells_expected(name: str) -> None:
     assert_as_made(load_scene(SCENES / f"{name}.toml"))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", OWN)
 def test_so_do_bodies_in_boxes(name: str) -> None:
     assert_as_made(OWN[name])

@@ -89,7 +89,7 @@ def assert_nearly_same_tables(one, other):
                 np.testing.assert_allclose(one.table(table)[name], column, rtol=1e-9, atol=1e-9, err_msg=name)
 
 
-@pytest.mark.parametrize("detector", ["sphere", "narrow_band"])
+@pytest.mark.parametrize("detector", ["sphere", pytest.param("narrow_band", marks=pytest.mark.long)])
 def test_the_run_is_that_of_one_process(detector):
     """But for the impulse responses of bodies, by factors of single precision."""
     serial = rigidfluid.run(fall(contact={"detector": detector}))
@@ -133,6 +133,7 @@ def test_each_rank_keeps_its_part_and_the_root_what_is_there_once(tmp_path):
     assert np.array_equal(np.union1d(first.mesh.part.cells, second.mesh.part.cells), range(first.mesh.part.counts[1]))
 
 
+@pytest.mark.long
 def test_pieces_make_the_fields_of_the_whole(tmp_path):
     rigidfluid.run(fall(), tmp_path / "one")
     shared(3, tmp_path / "three")

@@ -58,6 +58,7 @@ def copy(fall: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(fall, tmp_path / "copy"))
 
 
+@pytest.mark.long
 def test_files_of_a_run_with_a_fluid(written: list[Path]) -> None:
     names = {path.name for path in written}
     assert names == FIELD_PICTURES | {f"{name}.{kind}" for name in OF_A_FALL for kind in ("png", "svg")} | {

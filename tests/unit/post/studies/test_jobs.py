@@ -87,6 +87,7 @@ def test_rows_are_those_of_one_process(tmp_path: Path) -> None:
     assert read_rows(tmp_path / "two" / "study.csv") == two.rows
 
 
+@pytest.mark.long
 def test_only_what_is_missing_is_run_and_progress_counts_all(tmp_path: Path) -> None:
     fewer = load_study(falling_study(tmp_path, DENSITIES.replace(", 3.0", "")))
     first, _ = run_study(fewer, tmp_path / "out", jobs=2)
@@ -130,6 +131,7 @@ def test_closing_ends_processes_in_the_middle_of_their_runs(trouble: Trouble) ->
         os.kill(int(row.outcome.seconds), 0)
 
 
+@pytest.mark.long
 def test_an_interrupted_study_keeps_what_is_done_and_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = falling_study(tmp_path, DENSITIES)
 
