@@ -1,22 +1,35 @@
-"""Where the time of a step goes: by the run's own stopwatch, and inside its stage "advance" by hooks on functions."""
+"""Where the time of a step goes: by the run's own stopwatch, and by hooks on the parts of a fluid solve."""
 
 from __future__ import annotations
 
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable
-from functools import wraps
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from functools import reduce, wraps
 from typing import Any
+from unittest.mock import patch
 
 from disk_under_way import OUTPUT_EVERY
 
 from rigidfluid.core.run.simulation import Simulation
+from rigidfluid.core.run.stopwatch import Stopwatch
 
-# A stage of the run's stopwatch → what it does.
-WATCHED = {"mesh": "adapt mesh", "contact": "bodies through contacts", "move mesh": "move mesh", "detect": "detect"}
-FACTORISE, ITERATE = "factorise", "iterate"
-# Stage, module, function. A function within another one belongs to the outer one's stage.
+WATCHED = {
+    "mesh": "adapt mesh",
+    "transfer": "transfer",
+    "contact": "bodies through contacts",
+    "move mesh": "move mesh",
+    "detect": "detect",
+    "response": "reduced model",
+}
+"""Stage of the run's stopwatch → what it does."""
+
+FACTORISE, ITERATE, RESPOND = "factorise", "iterate", "impulse responses"
+SELDOM = FACTORISE, RESPOND
+"""Stages that a step may do without."""
+
 HOOKS = (
     ("assemble matrix", "rigidfluid.backends.scikit_fem.assembly", "CompiledAssembly.matrix"),
     ("assemble matrix", "rigidfluid.backends.dolfinx.forms", "Forms.assemble"),
@@ -26,73 +39,76 @@ HOOKS = (
     ("fill P", "rigidfluid.taylor_hood.constraint", "Constraint.place"),
     ("fill P", "rigidfluid.backends.dolfinx.constraint", "DistributedConstraint.matrix"),
     (FACTORISE, "rigidfluid.taylor_hood.lagged_solver", "LaggedSolver._renew"),
-    (ITERATE, "rigidfluid.taylor_hood.lagged_factors", "LaggedFactors.iterate"),
-    (ITERATE, "rigidfluid.backends.dolfinx.krylov", "Krylov.iterate"),
+    (ITERATE, "rigidfluid.taylor_hood.lagged_solver", "LaggedSolver.solve"),
+    (RESPOND, "rigidfluid.taylor_hood.lagged_solver", "LaggedSolver.solve_columns"),
     ("energies", "rigidfluid.taylor_hood.advance", "kinetic_energy"),
     ("energies", "rigidfluid.taylor_hood.advance", "dissipation"),
 )
+"""Stage, module and function of each part of a fluid solve."""
+
 STAGES = (*WATCHED.values(), *dict.fromkeys(stage for stage, _, _ in HOOKS), "the rest")
 
 
 class Hooks:
-    """Seconds and calls of each stage in the functions of `HOOKS` that are loaded, and Krylov iterations in them."""
+    """Calls of the functions of `HOOKS` that are loaded, and Krylov iterations and columns of impulse responses in
+    them; their time goes to the run's ``watch``, and not to the stage around them."""
 
-    def __init__(self) -> None:
-        self.seconds: Counter[str] = Counter()
+    def __init__(self, watch: Stopwatch) -> None:
         self.calls: Counter[str] = Counter()
-        self.iterations = 0
-        self._inside = False
-        for stage, module, name in HOOKS:
-            if module in sys.modules:
-                *owners, last = name.split(".")
-                owner = sys.modules[module]
-                for each in owners:
-                    owner = getattr(owner, each)
-                setattr(owner, last, self._timed(stage, getattr(owner, last)))
+        self.iterations = self.columns = 0
+        self._watch = watch
+
+    @contextmanager
+    def placed(self) -> Iterator[None]:
+        """With the hooks in place."""
+        with ExitStack() as patches:
+            for stage, module, name in HOOKS:
+                if module in sys.modules:
+                    *owners, last = name.split(".")
+                    owner = reduce(getattr, owners, sys.modules[module])
+                    patches.enter_context(patch.object(owner, last, self._timed(stage, getattr(owner, last))))
+            yield
 
     def _timed(self, stage: str, call: Callable[..., Any]) -> Callable[..., Any]:
         @wraps(call)
         def timed(*args: Any, **named: Any) -> Any:
-            if self._inside:
-                return call(*args, **named)
-            self._inside, start = True, time.perf_counter()
-            try:
+            with self._watch(stage):
                 result = call(*args, **named)
-            finally:
-                self._inside = False
-                self.seconds[stage] += time.perf_counter() - start
-                self.calls[stage] += 1
-            if stage == ITERATE:
-                self.iterations += result[1]
+            self.calls[stage] += 1
+            self.iterations += result[1] if stage == ITERATE else 0
+            self.columns += result.shape[1] if stage == RESPOND else 0
             return result
 
         return timed
 
 
 def measured(run: Simulation, steps: int) -> dict[str, Any]:
-    """Of a run under way: mean seconds a step and of its stages, Krylov iterations a step, factorisations in all.
+    """Mean seconds a step of a ``run`` under way, and of its stages; fluid solves, their Krylov iterations and columns
+    of impulse responses a step; all factorisations and re-meshes.
 
     With several processes the means over them, as each waits for the others in some stage.
     """
-    hooks, ranks = Hooks(), run.system.backend.ranks
-    before = Counter(run.watch.seconds)
-    start = time.perf_counter()
-    for step in range(steps):
-        if step % OUTPUT_EVERY == 0:
-            run.system.backend.memory()
-        run.step()
-    seconds = (time.perf_counter() - start) / steps
-    watched = {stage: (run.watch.seconds[key] - before[key]) / steps for key, stage in WATCHED.items()}
-    hooked = {stage: hooks.seconds[stage] / steps for stage, _, _ in HOOKS}
+    hooks, watch, ranks = Hooks(run.watch), run.watch, run.system.backend.ranks
+    before, remeshes = Counter(watch.seconds), run.counts.remeshes
+    with hooks.placed():
+        start = time.perf_counter()
+        for step in range(steps):
+            if step % OUTPUT_EVERY == 0:
+                run.system.backend.memory()
+            run.step()
+        seconds = (time.perf_counter() - start) / steps
     # factors may outlive all these steps
-    if unseen := sorted({stage for stage, _, _ in HOOKS} - hooks.calls.keys() - {FACTORISE}):
+    if run.system.has_fluid and (unseen := sorted({stage for stage, _, _ in HOOKS} - hooks.calls.keys() - {*SELDOM})):
         raise RuntimeError(f"no function of {', '.join(unseen)} was called: bring HOOKS up to date")
-    stages = {stage: (watched | hooked).get(stage, 0.0) for stage in STAGES}
+    spent = Counter({WATCHED.get(key, key): taken - before[key] for key, taken in watch.seconds.items()})
+    stages = {stage: spent[stage] / steps for stage in STAGES}
     stages["the rest"] = seconds - sum(stages.values())
     return {
         "seconds": ranks.sum(seconds) / ranks.size,
         "stages": {stage: ranks.sum(value) / ranks.size for stage, value in stages.items()},
+        "solves": hooks.calls[ITERATE] / steps,
         "iterations": hooks.iterations / steps,
+        "columns": hooks.columns / steps,
         "factorisations": hooks.calls[FACTORISE],
-        "remeshes": run.counts.remeshes,
+        "remeshes": run.counts.remeshes - remeshes,
     }
