@@ -14,7 +14,7 @@ from rigidfluid.core.contact.loads import pair_values
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
-from rigidfluid.core.run.impacts import HALVINGS, TOLERATED
+from rigidfluid.core.run.impacts import MOST_HALVINGS, TOLERATED_FRICTION
 
 QUESTION = "energy-error"
 _ALLOWED = 0.05
@@ -22,7 +22,8 @@ _ALLOWED = 0.05
 _LAYER_FACTOR = 1.0
 """Empirical: what a falling disk was seen to lose with four steps is .7 to 1.5 times the estimate with it."""
 _FRICTION = 0.1
-"""Empirical: friction on the bodies' path, which a run goes by, over what an impact loses [1]."""
+"""Empirical: energy that friction takes on the bodies' path, by which a run halves steps, over all that an impact
+loses [1]."""
 
 
 class _Rates(NamedTuple):
@@ -36,8 +37,8 @@ class _Rates(NamedTuple):
 
     def cut_step(self, step: float, bodies: int) -> float:
         """Step [time] that a run cuts the nominal ``step`` to where one of so many bodies hits."""
-        for _ in range(HALVINGS):
-            if _FRICTION * self.error(step) <= TOLERATED * bodies:
+        for _ in range(MOST_HALVINGS):
+            if _FRICTION * self.error(step) <= TOLERATED_FRICTION * bodies:
                 break
             step *= 0.5
         return step
@@ -45,8 +46,8 @@ class _Rates(NamedTuple):
     def longest_step(self, bodies: int) -> float:
         """Longest nominal step with the allowed error, in the cut steps at the impact [time]."""
         root = 2.0 * _ALLOWED / (self.layer + np.sqrt(self.layer**2 + 4.0 * _ALLOWED * self.fall))
-        cut = HALVINGS if TOLERATED * bodies < _FRICTION * _ALLOWED else 0
-        return float(2.0**cut * root**2)
+        halvings = MOST_HALVINGS if TOLERATED_FRICTION * bodies < _FRICTION * _ALLOWED else 0
+        return float(2.0**halvings * root**2)
 
 
 def energy_error_findings(design: DesignContacts, fluid: FluidProblem, step: float) -> Iterator[Finding]:

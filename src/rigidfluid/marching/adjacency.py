@@ -57,15 +57,14 @@ def inner_vertices(facets, cells, cell_start, cell_members):
         first = facets[facet, 0]
         for k in range(cell_start[first], cell_start[first + 1]):
             cell = cells[cell_members[k]]
-            total, shared = 0, 0
+            shared, other = 0, -1
             for vertex in cell:
-                total += vertex
-                for corner in facets[facet]:
-                    if corner == vertex:
-                        total -= vertex
-                        shared += 1
+                if vertex in facets[facet]:
+                    shared += 1
+                else:
+                    other = vertex
             if shared == facets.shape[1]:
-                across[facet] = total
+                across[facet] = other
     return across
 
 
@@ -75,7 +74,7 @@ def facets_beside(facets, marker, start, members):
     neighbours = np.full(facets.shape, -1, np.int32)
     for facet in range(len(facets)):
         for i in range(facets.shape[1]):
-            corner, found = facets[facet, i - 1], 0
+            corner, found = facets[facet, i - 1], 0  # a corner on ridge i
             for k in range(start[corner], start[corner + 1]):
                 other = members[k]
                 if other != facet and marker[other] == marker[facet] and _share_ridge(facets, facet, i, other):

@@ -20,7 +20,7 @@ def in_band(points, neighbours, vertex, distance, band):
     if len(neighbours.elsewhere) > 0 and neighbours.elsewhere[vertex] >= short * short:
         return True
     for k in range(neighbours.start[vertex], neighbours.start[vertex + 1]):
-        if _square(points, vertex, neighbours.members[k]) >= short * short:
+        if square_length(points, vertex, neighbours.members[k]) >= short * short:
             return True
     return False
 
@@ -31,7 +31,7 @@ def longest_edges(points, neighbours, vertices):
     longest = np.zeros(len(vertices))
     for row in range(len(vertices)):
         for k in range(neighbours.start[vertices[row]], neighbours.start[vertices[row] + 1]):
-            longest[row] = max(longest[row], _square(points, vertices[row], neighbours.members[k]))
+            longest[row] = max(longest[row], square_length(points, vertices[row], neighbours.members[k]))
     return longest
 
 
@@ -44,7 +44,8 @@ def square_in_band(points, neighbours, vertex, square, band):
 
 
 @njit(cache=True, nogil=True, forceinline=True)
-def _square(points, a, b):
+def square_length(points, a, b):
+    """Squared distance of two vertices."""
     total = 0.0
     for i in range(points.shape[1]):
         total += (points[b, i] - points[a, i]) ** 2

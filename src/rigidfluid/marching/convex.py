@@ -10,31 +10,27 @@ from numba import njit
 
 
 @njit(cache=True, nogil=True)
-def is_convex(points, surfaces, seeds):
-    """Whether no facet of ``seeds``, a surface closed and in one piece, has a neighbour that rises above its plane into
-    the fluid.
+def is_convex(points, surfaces, chosen):
+    """Whether the facets ``chosen``, one closed piece, are the surface of a convex body.
 
-    Convex at each of its ridges, it is the surface of a convex body.
+    It is convex at each of its ridges: no facet's neighbour rises above its plane into the fluid.
     """
     normal = np.empty(points.shape[1])
-    for facet in seeds:
+    for facet in chosen:
         if surfaces.across[facet] < 0:
             return False  # no cell tells the fluid's side
-        _towards_fluid(points, surfaces, facet, normal)
+        _write_normal(points, surfaces, facet, normal)
         corners = surfaces.facets[facet]
-        for i in range(len(corners)):
-            # the corner off the ridge of the facet beyond it: those on the ridge cancel in the sum
-            vertex = corners[i]
-            for k in range(len(corners)):
-                vertex += surfaces.facets[surfaces.neighbours[facet, i], k] - corners[k]
-            if _height(points, vertex, corners[0], normal) > 0.0:
-                return False
+        for neighbour in surfaces.neighbours[facet]:
+            for vertex in surfaces.facets[neighbour]:
+                if vertex not in corners and _height(points, vertex, corners[0], normal) > 0.0:
+                    return False
     return True
 
 
 @njit(cache=True, nogil=True)
-def _towards_fluid(points, surfaces, facet, normal):
-    """Write a vector across the facet, of any length, towards the cell it belongs to."""
+def _write_normal(points, surfaces, facet, normal):
+    """Write the facet's normal, of any length, into the fluid: towards the cell that it belongs to."""
     corners = surfaces.facets[facet]
     a, b = corners[0], corners[1]
     if len(normal) == 2:

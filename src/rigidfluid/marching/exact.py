@@ -25,7 +25,7 @@ from rigidfluid.marching.workspace import BEYOND, FAR, KNOWN
 
 
 class Front(NamedTuple):
-    """How far a march has come: it goes on from ``work.touched[first:touched]``, and has found so many ``beyond``."""
+    """How far a march has come: it goes on from ``work.visited[first:touched]``, and has found so many ``beyond``."""
 
     first: int
     touched: int
@@ -41,7 +41,7 @@ def seed(points, surfaces, seeds, work):
         for vertex in surfaces.facets[facet]:
             if work.state[vertex] == FAR:
                 work.state[vertex], work.key[vertex], work.facet[vertex] = KNOWN, 0.0, facet
-                work.touched[touched] = vertex
+                work.visited[touched] = vertex
                 touched += 1
     convex = seeds.whole and is_convex(points, surfaces, seeds.facets)
     tree = empty_tree(surfaces.facets) if convex else build_tree(points, surfaces.facets, seeds.facets)
@@ -53,10 +53,10 @@ def march(neighbours, target, band, work, front):
     """Spread the nearest facet from a `Front`; return numbers of vertices touched and beyond.
 
     Vertices outside the band are marked BEYOND, so that each is measured once, and listed at the end of
-    ``work.touched``.
+    ``work.visited``.
     """
     # names of their own spare the counting of references at each use
-    state, key, nearest_facet, queue = work.state, work.key, work.facet, work.touched
+    state, key, nearest_facet, queue = work.state, work.key, work.facet, work.visited
     start, members = neighbours.start, neighbours.members
     points, surfaces, wanted, tree = target
     first, touched, beyond = front
@@ -88,7 +88,7 @@ def accept(vertices, key, facet, work, touched):
         vertex = vertices[k]
         if work.state[vertex] == FAR and facet[k] >= 0:
             work.state[vertex], work.key[vertex], work.facet[vertex] = KNOWN, key[k], facet[k]
-            work.touched[touched] = vertex
+            work.visited[touched] = vertex
             touched += 1
     return touched
 
@@ -97,7 +97,7 @@ def accept(vertices, key, facet, work, touched):
 def measure(target, work, touched):
     """Put the exact squared distance in place of any other key that the touched vertices have."""
     points, surfaces, wanted, tree = target
-    for vertex in work.touched[:touched]:
+    for vertex in work.visited[:touched]:
         square, facet = local_search_to_vertex(points, vertex, surfaces, wanted, work.facet[vertex])
         square, facet = search_to_vertex(points, vertex, tree, square, facet)
         work.key[vertex], work.facet[vertex] = square, facet
@@ -107,15 +107,15 @@ def measure(target, work, touched):
 def reset(work, touched, beyond):
     """Make all vertices FAR again."""
     for k in range(touched):
-        work.state[work.touched[k]] = FAR
+        work.state[work.visited[k]] = FAR
     for k in range(1, beyond + 1):
-        work.state[work.touched[-k]] = FAR
+        work.state[work.visited[-k]] = FAR
 
 
 @njit(cache=True, nogil=True)
 def put_aside(work, touched, beyond):
     """Return the vertices, keys, facets and vertices beyond of a march, and free the workspace for another one."""
-    vertices, outside = work.touched[:touched].copy(), work.touched[len(work.touched) - beyond :].copy()
+    vertices, outside = work.visited[:touched].copy(), work.visited[len(work.visited) - beyond :].copy()
     key, facet = work.key[vertices], work.facet[vertices]
     reset(work, touched, beyond)
     return vertices, key, facet, outside
@@ -124,10 +124,10 @@ def put_aside(work, touched, beyond):
 @njit(cache=True, nogil=True)
 def put_back(work, vertices, key, facet, outside):
     """Leave the workspace as it was before `put_aside`."""
-    work.touched[: len(vertices)] = vertices
+    work.visited[: len(vertices)] = vertices
     for k in range(len(vertices)):
         vertex = vertices[k]
         work.state[vertex], work.key[vertex], work.facet[vertex] = KNOWN, key[k], facet[k]
-    work.touched[len(work.touched) - len(outside) :] = outside
+    work.visited[len(work.visited) - len(outside) :] = outside
     for vertex in outside:
         work.state[vertex] = BEYOND

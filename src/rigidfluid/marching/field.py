@@ -25,7 +25,7 @@ class Band(NamedTuple):
 
 
 class Wave(NamedTuple):
-    """Numbers of vertices that a march lists as ``touched`` and as ``beyond``, and its ``target``."""
+    """Numbers of vertices that a march has ``touched``, in the band, and found ``beyond`` it, and its ``target``."""
 
     touched: int
     beyond: int
@@ -77,7 +77,7 @@ def distance_field(
     """
     work = workspace or new_workspace(topology.vertices)
     wave = WAVES[accuracy](topology, points, surfaces, Band(band_width), work)
-    vertices = work.touched[: wave.touched].copy()
+    vertices = work.visited[: wave.touched].copy()
     distance = work.key[vertices]
     facet = work.facet[vertices]
     reset(work, wave.touched, wave.beyond)

@@ -25,14 +25,14 @@ FLAT = 1e-12
 
 @njit(cache=True, nogil=True)
 def march_first_order(points, adjacency, band, work, touched):
-    """Spread the distance from the first ``touched`` vertices of ``work.touched``; how many there are then.
+    """Spread the distance from the first ``touched`` vertices of ``work.visited``; return how many are touched then.
 
     Each vertex also gets the facet of the corner that its wave comes from. Vertices outside the band are left FAR.
     """
     cells, cell_rows, neighbours = adjacency
     size = 0
     for k in range(touched):
-        size = push(work.heap, size, work.touched[k], work.key[work.touched[k]])
+        size = push(work.heap, size, work.visited[k], work.key[work.visited[k]])
     while size > 0:
         vertex = pop(work.heap, size)
         size -= 1
@@ -43,7 +43,7 @@ def march_first_order(points, adjacency, band, work, touched):
                 state = work.state[other]
                 if state == KNOWN:
                     continue
-                value = _update(points, cell, other, vertex, work)
+                value = _least_value(points, cell, other, vertex, work)
                 if state == TRIAL and value >= work.key[other]:
                     continue
                 if not in_band(points, neighbours, other, value, band):
@@ -51,18 +51,18 @@ def march_first_order(points, adjacency, band, work, touched):
                 work.key[other], work.facet[other] = value, work.facet[vertex]
                 if state == TRIAL:
                     lower(work.heap, other, value)
-                    continue
-                work.touched[touched] = other
-                touched += 1
-                work.state[other] = TRIAL
-                size = push(work.heap, size, other, value)
+                else:
+                    work.visited[touched] = other
+                    touched += 1
+                    work.state[other] = TRIAL
+                    size = push(work.heap, size, other, value)
     return touched
 
 
 @njit(cache=True, nogil=True)
-def _update(points, cell, other, vertex, work):
-    """The least value at ``other`` over all faces of known corners that hold ``vertex``."""
-    best = work.key[vertex] + _length(points, other, vertex)
+def _least_value(points, cell, other, vertex, work):
+    """The least value at ``other`` by any face of known corners with ``vertex``, which has just become known."""
+    best = work.key[vertex] + sqrt(_dot(points, other, vertex, vertex))
     for i in range(len(cell)):
         second = cell[i]
         if second == vertex or work.state[second] != KNOWN:
@@ -77,7 +77,8 @@ def _update(points, cell, other, vertex, work):
 
 @njit(cache=True, nogil=True)
 def from_edge(points, x, a, b, value):
-    """The value at ``x`` of the plane wave through two vertices, infinite if it does not come from between them."""
+    """Value at vertex ``x`` of the plane wave through vertices ``a`` and ``b``, infinite unless it comes from between
+    them."""
     aa, bb, ab = _dot(points, x, a, a), _dot(points, x, b, b), _dot(points, x, a, b)
     det = aa * bb - ab * ab
     if det <= FLAT * aa * bb:
@@ -92,7 +93,7 @@ def from_edge(points, x, a, b, value):
 
 @njit(cache=True, nogil=True)
 def from_triangle(points, x, a, b, c, value):
-    """The value at ``x`` of the plane wave through three vertices, infinite if it does not come from between them."""
+    """Value at vertex ``x`` of the plane wave through three vertices, infinite unless it comes from between them."""
     aa, bb, cc = _dot(points, x, a, a), _dot(points, x, b, b), _dot(points, x, c, c)
     ab, ac, bc = _dot(points, x, a, b), _dot(points, x, a, c), _dot(points, x, b, c)
     # the adjugate of the Gram matrix
@@ -102,6 +103,7 @@ def from_triangle(points, x, a, b, c, value):
     if det <= FLAT * aa * bb * cc:
         return np.inf
     rise_b, rise_c = value[b] - value[a], value[c] - value[a]
+    # det times the sums 1ᵀ Q 1, 1ᵀ Q r and rᵀ Q r over the rises r = u - u_a
     ones = q_aa + q_bb + q_cc + 2.0 * (q_ab + q_ac + q_bc)
     mixed = (q_ab + q_bb + q_bc) * rise_b + (q_ac + q_bc + q_cc) * rise_c
     squares = q_bb * rise_b * rise_b + 2.0 * q_bc * rise_b * rise_c + q_cc * rise_c * rise_c
@@ -119,7 +121,7 @@ def from_triangle(points, x, a, b, c, value):
 
 @njit(cache=True, nogil=True)
 def _larger_root(a, b, c):
-    """Larger root t of a t² - 2 b t + c = 0; -1 where there is none."""
+    """Larger root t of a t² - 2 b t + c = 0, -1 where there is none."""
     discriminant = b * b - a * c
     return -1.0 if discriminant < 0.0 else (b + sqrt(discriminant)) / a
 
@@ -131,8 +133,3 @@ def _dot(points, x, a, b):
     for k in range(points.shape[1]):
         total += (points[a, k] - points[x, k]) * (points[b, k] - points[x, k])
     return total
-
-
-@njit(cache=True, nogil=True)
-def _length(points, x, a):
-    return sqrt(_dot(points, x, a, a))

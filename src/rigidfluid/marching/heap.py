@@ -24,7 +24,7 @@ class Heap(NamedTuple):
 
 @njit(cache=True, nogil=True)
 def push(heap, size, vertex, key):
-    """Add a vertex; the new size."""
+    """Add a vertex; return the new size."""
     heap.place[vertex] = size
     heap.vertices[size] = vertex
     lower(heap, vertex, key)
@@ -46,7 +46,7 @@ def lower(heap, vertex, key):
 
 @njit(cache=True, nogil=True)
 def pop(heap, size):
-    """Take out the vertex on top; that vertex. The size falls by one."""
+    """Take out the vertex on top and return it; the size falls by one."""
     top = heap.vertices[0]
     last = size - 1
     vertex, key = heap.vertices[last], heap.keys[last]

@@ -15,6 +15,7 @@ from numba import njit
 
 from rigidfluid.core.geometry.facet_tree import search_to_facet
 from rigidfluid.core.geometry.simplices import facet_to_facet
+from rigidfluid.marching.band import square_length
 from rigidfluid.marching.walk import local_search_to_facet
 from rigidfluid.marching.workspace import KNOWN
 
@@ -37,23 +38,23 @@ def facet_gaps(field, ball, chosen, reach, all_places):
     its distance to the ball, or its corners' distances less its edges, show to be too far.
     """
     (points, surfaces, _, _), (centre, radius) = field.target, ball
-    bound = gap = np.empty(len(chosen))
+    gap = np.empty(len(chosen))  # a lower bound until it is known
     partner = np.empty(len(chosen), np.int32)
     if len(chosen) == 0:
         return gap, partner
     first, nearest_corner = 0, np.inf
     for row in range(len(chosen)):
-        bound[row] = sqrt(_box_to_point(points, surfaces.facets[chosen[row]], centre)) - radius
-        if bound[row] <= reach:
+        gap[row] = sqrt(_box_to_point(points, surfaces.facets[chosen[row]], centre)) - radius
+        if gap[row] <= reach:
             by_corners, corner_gap = _bounds(points, surfaces.facets[chosen[row]], field.work)
-            bound[row] = max(bound[row], by_corners)
+            gap[row] = max(gap[row], by_corners)
             if corner_gap < nearest_corner:
                 first, nearest_corner = row, corner_gap
     limit = reach if all_places else min(reach, nearest_corner)
     # the most promising one first, so that few others are left
     for k in range(-1, len(chosen)):
         row = first if k < 0 else k
-        if bound[row] > limit:
+        if gap[row] > limit:
             gap[row] = np.inf
         elif k != first:
             gap[row], partner[row] = _facet_gap(field, chosen[row])
@@ -73,7 +74,7 @@ def _bounds(points, corners, work):
             distance = sqrt(work.key[corner])
             edge = 0.0
             for other in corners:
-                edge = max(edge, _length(points, corner, other))
+                edge = max(edge, sqrt(square_length(points, corner, other)))
             bound = max(distance - edge, 0.0)
             least = bound if least == np.inf else max(least, bound)
             nearest = min(nearest, distance)
@@ -108,10 +109,7 @@ def nearest_points(points, facets, first, second):
 
 @njit(cache=True, nogil=True)
 def places(facets, chosen):
-    """Number (c,) of the connected patch that each facet of ``chosen`` (c,) belongs to.
-
-    Facets that share a vertex belong together.
-    """
+    """Number (c,) of the patch that each facet of ``chosen`` (c,) is in, connected by shared vertices."""
     patch = np.full(len(chosen), -1, np.int64)
     count = 0
     for row in range(len(chosen)):
@@ -120,9 +118,9 @@ def places(facets, chosen):
         patch[row] = count
         waiting = [row]
         while len(waiting) > 0:
-            at = waiting.pop()
+            reached = waiting.pop()
             for other in range(len(chosen)):
-                if patch[other] < 0 and _touch(facets, chosen[at], chosen[other]):
+                if patch[other] < 0 and _share_vertex(facets, chosen[reached], chosen[other]):
                     patch[other] = count
                     waiting.append(other)
         count += 1
@@ -130,20 +128,12 @@ def places(facets, chosen):
 
 
 @njit(cache=True, nogil=True)
-def _touch(facets, first, second):
+def _share_vertex(facets, first, second):
     for i in facets[first]:
         for j in facets[second]:
             if i == j:
                 return True
     return False
-
-
-@njit(cache=True, nogil=True)
-def _length(points, a, b):
-    total = 0.0
-    for k in range(points.shape[1]):
-        total += (points[a, k] - points[b, k]) ** 2
-    return sqrt(total)
 
 
 @njit(cache=True, nogil=True)

@@ -1,6 +1,6 @@
 """Workspace of one march: arrays as long as the mesh has vertices, kept from march to march.
 
-A march leaves ``state`` as it found it, except for the vertices that it lists in ``touched``; `reset` puts those back.
+A march leaves ``state`` as it found it, except for the vertices that it lists as ``visited``; `reset` puts those back.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ class Workspace(NamedTuple):
     """Arrays with a value for each vertex: ``state``, ``key`` (squared distance in exact marches, distance in those of
     first order), and the ``facet`` nearest so far.
 
-    Marches of first order use the ``heap``; ``touched`` lists the vertices in the band from its front, and those that
-    are BEYOND from its back.
+    Marches of first order use the ``heap``; ``visited`` lists the vertices touched, those in the band, from its front,
+    and those that are BEYOND from its back.
     """
 
     state: NDArray[np.int8]
     key: FloatArray
     facet: NDArray[np.int32]
     heap: Heap
-    touched: NDArray[np.int32]
+    visited: NDArray[np.int32]
 
 
 def new_workspace(vertices: int) -> Workspace:
     """Workspace for marches over a mesh of this number of ``vertices``."""
-    facet, touched, entries, place = (np.empty(vertices, np.int32) for _ in range(4))
+    facet, visited, entries, place = (np.empty(vertices, np.int32) for _ in range(4))
     heap = Heap(entries, np.empty(vertices), place)
-    return Workspace(np.zeros(vertices, np.int8), np.empty(vertices), facet, heap, touched)
+    return Workspace(np.zeros(vertices, np.int8), np.empty(vertices), facet, heap, visited)

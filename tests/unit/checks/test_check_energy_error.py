@@ -9,13 +9,13 @@ import pytest
 
 from rigidfluid import scene_from_dict
 from rigidfluid.checks import Finding, check
-from rigidfluid.core.run.impacts import HALVINGS
+from rigidfluid.core.run.impacts import MOST_HALVINGS
 
 RADIUS, RANGE, DENSITY, VISCOSITY, GRAVITY = 0.1, 0.03, 1.0, 0.01, 981.0
 BALL = {"type": "sphere", "radius": RADIUS, "density": 3.0, "position": [0.4, 0.2]}
 STIFF = 1e-12
 """So stiff that no step of these tests resolves a contact."""
-CUT = 2.0**HALVINGS
+CUT = 2.0**MOST_HALVINGS
 """A nominal step over the shortest that an impact makes of it."""
 
 

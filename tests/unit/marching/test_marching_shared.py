@@ -148,13 +148,12 @@ def test_ranks_exchange_what_is_new(monkeypatch):
         detector = made(NarrowBandDetector, bodies, walls)
         detector.detect(pose, part_of(mesh, ranks), REACH)
         shared = detector._finder._shared
-        return shared.exchanges, len(shared.part.border)
+        return len(shared.part.border)
 
-    (exchanges, border), *_ = on_ranks(2, work)
+    border, _ = on_ranks(2, work)
     lists = [item for item in sent if isinstance(item, list) and isinstance(item[0], tuple)]
     posts = [item for item in lists if isinstance(item[0][0], bool)]
-    assert len(posts) == 2 * exchanges
-    assert 2 <= exchanges <= 4  # for all bodies together; the last one finds nothing
+    assert len(posts) in (4, 6, 8)  # two ranks exchange for all bodies together; the last time they find nothing
     keys = np.concatenate([key for post in posts for _, (_, _, key, _) in post])
     assert 0 < len(keys) <= len(bodies) * border
     assert keys.min() > 0.0  # what is on a body is known to all

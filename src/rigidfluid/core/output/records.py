@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -27,26 +28,37 @@ LEDGER_COLUMNS = (
 
 def columns(dimension: int, coordinates: Iterable[str] = COORDINATES) -> dict[str, tuple[str, ...]]:
     """Column names of each table, in order; ``coordinates`` are those of joints, by name."""
-    axes = "xyz"[:dimension]
-    along = tuple(axes)
-    spin = ("w",) if dimension == 2 else ("wx", "wy", "wz")
-    torque = ("t",) if dimension == 2 else ("tx", "ty", "tz")
-    orientation = ("angle",) if dimension == 2 else ("qw", "qx", "qy", "qz")
-
-    def named(prefix: str, names: Sequence[str] = along) -> tuple[str, ...]:
-        return tuple(prefix + name for name in names)
-
+    quantities = quantity_columns(dimension)
+    position, velocity, force = quantities["position"], quantities["velocity"], quantities["force"]
+    a, b, normal = (_components(name, dimension) for name in "abn")
     return {
-        "bodies": (
-            *("time", "step", "body", *along, *orientation, *named("v"), *spin),
-            *(*named("f"), *torque, *named("cf"), *named("c", torque), "gap"),
-        ),
-        "contacts": ("time", "step", "a", "b", *named("a"), *named("b"), *named("n"), "gap", *named("f")),
-        "joints": ("time", "step", "joint", "gap", *coordinates, "rate", *named("f"), *torque),
+        "bodies": ("time", "step", "body", *chain(*quantities.values()), "gap"),
+        "contacts": ("time", "step", "a", "b", *a, *b, *normal, "gap", *force),
+        "joints": ("time", "step", "joint", "gap", *coordinates, "rate", *force, *quantities["torque"]),
         "energy": ("time", "step", *LEDGER_COLUMNS),
         "steps": ("time", "step", "size", "error", "unknowns", "remeshes", "cells", "quality"),
-        "probes": ("time", "step", "probe", *along, *named("v"), "pressure"),
+        "probes": ("time", "step", "probe", *position, *velocity, "pressure"),
     }
+
+
+def quantity_columns(dimension: int) -> dict[str, tuple[str, ...]]:
+    """Columns of the table of bodies by the quantity that they hold, in order; ``force`` and ``torque`` are the
+    fluid's."""
+    two = dimension == 2
+    return {
+        "position": _components("", dimension),
+        "orientation": ("angle",) if two else ("qw", "qx", "qy", "qz"),
+        "velocity": _components("v", dimension),
+        "angular_velocity": ("w",) if two else _components("w", dimension),
+        "force": _components("f", dimension),
+        "torque": ("t",) if two else _components("t", dimension),
+        "contact_force": _components("cf", dimension),
+        "contact_torque": ("ct",) if two else _components("ct", dimension),
+    }
+
+
+def _components(name: str, dimension: int) -> tuple[str, ...]:
+    return tuple(name + axis for axis in "xyz"[:dimension])
 
 
 class StepCost(NamedTuple):

@@ -11,7 +11,7 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import rotation_between
 from rigidfluid.core.output.energy_account import per_cent
 from rigidfluid.core.output.history import History
-from rigidfluid.core.output.records import columns
+from rigidfluid.core.output.records import quantity_columns
 from rigidfluid.core.run.remarks import Remark
 
 _ROUNDING = 1e-9
@@ -27,8 +27,8 @@ def cycles(history: History, periods: Mapping[str, float]) -> dict[str, dict[str
     and the ``rotation``, in 2D an angle, in 3D a rotation vector [rad]. Values are linear between two steps if none
     ends with a cycle.
     """
-    axes, orientation = _axes(history.dimension)
-    table = history.table("bodies", ("time", "body", *axes, *orientation))
+    names = quantity_columns(history.dimension)
+    table = history.table("bodies", ("time", "body", *names["position"], *names["orientation"]))
     return {name: _mechanism_cycles(table, name, period, history.dimension) for name, period in periods.items()}
 
 
@@ -58,14 +58,14 @@ def start_remarks(found: Mapping[str, Mapping[str, Any]], inertia: bool, length:
 
 def _mechanism_cycles(table: Mapping[str, FloatArray], name: str, period: float, dimension: int) -> dict[str, Any]:
     mine = table["body"] == name
-    time, (axes, orientation) = table["time"][mine], _axes(dimension)
+    time, names = table["time"][mine], quantity_columns(dimension)
     whole = int(np.floor(time[-1] / period + _ROUNDING)) if len(time) else 0
     ends = period * np.arange(whole + 1)
 
-    def interpolate(names: tuple[str, ...]) -> FloatArray:
-        return np.column_stack([np.interp(ends, time, table[column][mine]) for column in names])
+    def interpolate(quantity: str) -> FloatArray:
+        return np.column_stack([np.interp(ends, time, table[column][mine]) for column in names[quantity]])
 
-    places, turns = interpolate(axes), interpolate(orientation)
+    places, turns = interpolate("position"), interpolate("orientation")
     if dimension == 3:
         turns /= np.linalg.norm(turns, axis=1, keepdims=True)
     rotation = rotation_between(turns[:-1], turns[1:])
@@ -74,9 +74,3 @@ def _mechanism_cycles(table: Mapping[str, FloatArray], name: str, period: float,
         "displacement": np.diff(places, axis=0).tolist(),
         "rotation": (rotation[:, 0] if dimension == 2 else rotation).tolist(),
     }
-
-
-def _axes(dimension: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Names of the columns of position and of orientation."""
-    names = columns(dimension)["bodies"][3:]
-    return names[:dimension], names[dimension : dimension + (1 if dimension == 2 else 4)]

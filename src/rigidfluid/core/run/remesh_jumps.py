@@ -8,7 +8,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.output.history import History
-from rigidfluid.core.output.records import columns
+from rigidfluid.core.output.records import quantity_columns
 from rigidfluid.core.run.remarks import Remark
 
 _AFTER = 3
@@ -17,13 +17,11 @@ _AFTER = 3
 _START = 5
 """First steps of a run, whose forces are those of the start."""
 
-
 NOTED = 0.1
 """A jump of more than this share of the range is noted at the end of a run."""
 
 _NOISE = 1e-3
-
-_COLUMNS = {"force": ("fx", "fy", "fz"), "torque": ("t", "tx", "ty", "tz")}
+"""Least range of a torque, over that of the force times the body's radius [1]."""
 
 
 def remesh_jumps(history: History, radii: Mapping[str, float]) -> dict[str, dict[str, float]]:
@@ -39,8 +37,8 @@ def remesh_jumps(history: History, radii: Mapping[str, float]) -> dict[str, dict
     first = first[first >= _START + 2]
     if not len(first):
         return {}
-    names = columns(history.dimension)["bodies"]
-    loads = {load: tuple(name for name in names if name in of_load) for load, of_load in _COLUMNS.items()}
+    names = quantity_columns(history.dimension)
+    loads = {load: names[load] for load in ("force", "torque")}
     bodies = history.table("bodies", ("time", "body", *loads["force"], *loads["torque"]))
     found = {}
     for name, radius in radii.items():

@@ -6,14 +6,14 @@ import numpy as np
 
 from rigidfluid.core.output.energy_account import NOTICEABLE, EnergyAccount
 from rigidfluid.core.output.history import History
-from rigidfluid.core.output.records import columns
+from rigidfluid.core.output.records import quantity_columns
 from rigidfluid.core.run.remarks import Remark
 
 FARTHEST_TURN = 0.5
-"""Turn in a step up to which next to nothing is lost of a flow that goes round with its body [rad]."""
+"""Turn in a step up to which a flow that goes round with its body loses next to no energy [rad]."""
 
-TOLERANCE = 0.003
-"""Tolerance by which steps find their length by themselves."""
+ADVISED_TOLERANCE = 0.003
+"""A ``time.tolerance`` that makes steps short enough."""
 
 
 def turn_remarks(history: History, account: EnergyAccount) -> list[Remark]:
@@ -22,22 +22,22 @@ def turn_remarks(history: History, account: EnergyAccount) -> list[Remark]:
     Flow that is the same all round a body keeps its energy however fast the body spins. Flow that is carried round with
     it is damped by steps of a radian and more, and by as much at half the step, so that halving the step shows nothing.
     """
-    loss, steps = account.loss, history.energy["residual_steps"]
-    if account.share(min(loss.largest, steps[loss.end] - steps[loss.start])) < NOTICEABLE:
+    loss, lost_by_steps = account.loss, history.energy["residual_steps"]
+    if account.share(min(loss.largest, lost_by_steps[loss.end] - lost_by_steps[loss.start])) < NOTICEABLE:
         return []
-    spins = tuple(name for name in columns(history.dimension)["bodies"] if name in ("w", "wx", "wy", "wz"))
-    bodies = history.table("bodies", ("time", "body", *spins))
+    components = quantity_columns(history.dimension)["angular_velocity"]
+    bodies = history.table("bodies", ("time", "body", *components))
     count = len(np.unique(bodies["body"]))
     time = bodies["time"].reshape(-1, count)
-    spin = np.sqrt(sum(np.square(bodies[name].reshape(-1, count)) for name in spins))
-    turn = np.max(np.diff(time, axis=0) * spin[1:], axis=0)
+    angular_speed = np.sqrt(sum(np.square(bodies[name].reshape(-1, count)) for name in components))
+    turn = np.max(np.diff(time, axis=0) * angular_speed[1:], axis=0)
     worst = int(np.argmax(turn))
     if turn[worst] <= FARTHEST_TURN:
         return []
-    name, enough = str(bodies["body"][worst]), FARTHEST_TURN / float(spin[:, worst].max())
+    name, step = str(bodies["body"][worst]), FARTHEST_TURN / float(angular_speed[:, worst].max())
     text = (
         f"{name!r} turned by up to {turn[worst]:.2g} rad in a step: flow that is carried round with it loses its "
         f"energy, and above 1 rad halving time.step may not show it"
     )
-    remedy = f"Set time.step to {enough:.2g} or less, {FARTHEST_TURN:g} rad a step, or time.tolerance to {TOLERANCE:g}."
-    return [Remark("warning", text, remedy)]
+    remedy = f"Set time.step to {step:.2g} or less, {FARTHEST_TURN:g} rad a step, "
+    return [Remark("warning", text, remedy + f"or time.tolerance to {ADVISED_TOLERANCE:g}.")]

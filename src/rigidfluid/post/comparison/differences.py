@@ -9,7 +9,6 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.mechanics.rigid import angle_between
-from rigidfluid.core.output.records import columns
 from rigidfluid.post.reports.results import Results
 
 ORIENTATION, ENERGY = "orientation", "energy"
@@ -95,15 +94,13 @@ def pair(reference: tuple[str, Results], other: tuple[str, Results]) -> Pair:
 
 def histories(results: Results) -> Histories:
     """Histories of the quantities that a comparison of runs takes."""
-    named = columns(results.model.dimension)["bodies"]
-    spin = [name for name in ("w", "wx", "wy", "wz") if name in named]
     energy = results.energy["kinetic"] + results.energy["contact"]
     return {
-        "position": results.vectors(""),
-        "velocity": results.vectors("v"),
-        ORIENTATION: results.orientation,
-        "spin": np.stack([results.bodies[name] for name in spin], axis=-1),
-        "hydrodynamic_force": results.vectors("f"),
+        "position": results.quantity("position"),
+        "velocity": results.quantity("velocity"),
+        ORIENTATION: results.quantity("orientation"),
+        "spin": results.quantity("angular_velocity"),
+        "hydrodynamic_force": results.quantity("force"),
         ENERGY: energy[:, None, None],
     }
 

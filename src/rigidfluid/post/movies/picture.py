@@ -50,7 +50,7 @@ def ground(results: Results, grid: Grid) -> FloatArray:
 
 def draw_bodies(picture: FloatArray, grid: Grid, results: Results, state: int) -> None:
     """Paint the bodies, as the plane cuts them, into a picture (rows, columns, 3)."""
-    places = zip(results.system.bodies, results.vectors("")[state], rotations(results, state), strict=True)
+    places = zip(results.system.bodies, results.quantity("position")[state], rotations(results, state), strict=True)
     for body, centre, turn in places:
         _draw(picture, grid, body, centre, turn)
 

@@ -17,13 +17,13 @@ _GRID = 80
 
 def rotations(results: Results, state: int) -> FloatArray:
     """From the bodies' frames to space, (n, d, d)."""
-    return rotation_matrices(results.orientation[state])
+    return rotation_matrices(results.quantity("orientation")[state])
 
 
 def cuts(results: Results, state: int, plane: ViewPlane, through: FloatArray) -> list[FloatArray]:
     """The curves (K, 2) in which the plane through a point (d,) cuts bodies, to the right and up."""
     turns = rotations(results, state)
-    places = zip(results.system.bodies, results.vectors("")[state], turns, strict=True)
+    places = zip(results.system.bodies, results.quantity("position")[state], turns, strict=True)
     return [curve for body, centre, turn in places for curve in cut(body, centre, turn, plane, through)]
 
 

@@ -80,8 +80,8 @@ class Canvas:
 
     def paint_bodies(self, shells: list[Shell], results: Results, state: int, colour: str, stripe: str) -> None:
         """Paint the bodies lit from the upper left, each with a ``stripe`` along its x-axis."""
-        places = zip(results.system.bodies, shells, results.vectors("")[state], rotations(results, state), strict=True)
-        plane = self.grid.plane
+        plane, position = self.grid.plane, results.quantity("position")[state]
+        places = zip(results.system.bodies, shells, position, rotations(results, state), strict=True)
         observer = np.stack([plane.right, plane.up, plane.normal])
         for body, shell, centre, turn in places:
             own = shell.triangles[..., :2] / body.bounding_radius

@@ -57,7 +57,7 @@ def reference(results: Results) -> Reference | None:
     if stream is not None:
         words = "the greatest mean velocity of an inlet"
         return Reference(float(np.linalg.norm(stream)), _axes(results, stream), words)
-    towed = results.vectors("v")[:, results.system.prescribed].reshape(-1, results.system.dimension)
+    towed = results.quantity("velocity")[:, results.system.prescribed].reshape(-1, results.system.dimension)
     speed = np.linalg.norm(towed, axis=1)
     if not speed.any():
         return None
@@ -76,7 +76,7 @@ def coefficients(results: Results, by: Reference) -> FloatArray:
     density = results.system.fluid.density
     width = diameters(results)
     area = width if results.system.dimension == 2 else 0.25 * np.pi * width**2
-    found: FloatArray = results.vectors("f") @ by.axes.T / (0.5 * density * by.speed**2 * area[:, None])
+    found: FloatArray = results.quantity("force") @ by.axes.T / (0.5 * density * by.speed**2 * area[:, None])
     found[0] = np.nan
     return found
 
@@ -84,7 +84,7 @@ def coefficients(results: Results, by: Reference) -> FloatArray:
 def figures(results: Results, by: Reference) -> Iterator[Figures]:
     """Coefficients of each body."""
     found, time = coefficients(results, by)[1:], results.time[1:]
-    across = results.vectors("")[1:] @ by.axes[1]
+    across = results.quantity("position")[1:] @ by.axes[1]
     scale = np.abs(found[late(time), :, 0]).mean(axis=0)
     for i, width in enumerate(diameters(results)):
         by_lift = frequency(time, found[:, i, 1], _LEAST_LIFT * scale[i])

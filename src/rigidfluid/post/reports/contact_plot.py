@@ -30,7 +30,7 @@ def contact_plot(results: Results) -> Figure:
 
 def _largest_force(results: Results) -> tuple[FloatArray, str]:
     """Largest contact force on a body at each time (s,), over its weight if all have one, and its label."""
-    force = np.linalg.norm(results.vectors("cf"), axis=2)
+    force = np.linalg.norm(results.quantity("contact_force"), axis=2)
     weight = np.linalg.norm(results.system.weight, axis=1)
     if not weight.all():
         return np.asarray(force.max(axis=1)), "largest\ncontact force [force]"

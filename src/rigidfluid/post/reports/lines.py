@@ -39,7 +39,7 @@ _VISIBLE = 0.05
 
 def position_plot(results: Results, plane: ViewPlane) -> Figure:
     """The paths through the domain as the ``plane`` shows them, and each coordinate over time."""
-    position, axes_names = results.vectors(""), results.axes
+    position, axes_names = results.quantity("position"), results.axes
     figure = new_figure(8.0, 2.0 * len(axes_names) + 0.8)
     left, right = figure.subfigures(1, 2, width_ratios=(2, 3), squeeze=False)[0]
     draw_paths(left.subplots(), results, plane)
@@ -55,7 +55,7 @@ def position_plot(results: Results, plane: ViewPlane) -> Figure:
 
 def speed_plot(results: Results) -> Figure:
     """Speed and, in a fluid, the Reynolds number with either density."""
-    speed = np.linalg.norm(results.vectors("v"), axis=2)
+    speed = np.linalg.norm(results.quantity("velocity"), axis=2)
     reynolds = _reynolds_numbers(results, speed)
     figure, panels = time_panels(1 + len(reynolds))
     draw_bodies(panels[0], results.time, speed, results.names)
@@ -87,7 +87,7 @@ def gap_plot(results: Results) -> Figure:
 def force_plot(results: Results) -> Figure:
     """The fluid's force and the contact force side by side, all components to the same scale."""
     figure, panels = fluid_and_contacts(len(results.axes))
-    fluid, contact = results.vectors("f"), results.vectors("cf")
+    fluid, contact = results.quantity("force"), results.quantity("contact_force")
     for k, (left, right) in enumerate(panels):
         draw_bodies(left, results.time, fluid[..., k], results.names)
         draw_bodies(right, results.time, contact[..., k], results.names)

@@ -64,7 +64,7 @@ def moment(results: Results, output: int, plane: ViewPlane, body: int) -> Moment
     """Section, gap and outlines at an output time in the plane, in 3D through the centre of a body; both by number."""
     time, path = results.series[output]
     state = results.state_at(time)
-    centre = results.vectors("")[state, body]
+    centre = results.quantity("position")[state, body]
     return Moment(
         time=time,
         section=Section.cut(read_vtu(path), plane, centre),

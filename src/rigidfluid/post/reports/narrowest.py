@@ -39,7 +39,7 @@ def gap_middle(results: Results, state: int, number: int, plane: ViewPlane) -> F
 
     The other surface is that whose distance agrees best with the table's gap, which is none to surfaces without wall.
     """
-    system, centres, turns = results.system, results.vectors("")[state], rotations(results, state)
+    system, centres, turns = results.system, results.quantity("position")[state], rotations(results, state)
     body, centre, turn = system.bodies[number], centres[number], turns[number]
     curves = [curve[:-1] for curve in cut(body, centre, turn, plane, centre)]  # closed: the last point is the first
     outline = plane.lifted(np.concatenate(curves), centre)

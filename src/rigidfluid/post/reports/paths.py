@@ -20,7 +20,7 @@ _PLACES = 5
 def draw_paths(axes: Axes, results: Results, plane: ViewPlane) -> None:
     """Paths as the plane shows them, and each body as the plane through its own centre cuts it: few bodies at some
     times, many at the end; in 3D with the domain as the plane through the first body's start cuts it."""
-    position = results.vectors("")
+    position = results.quantity("position")
     axes.contour(
         *distance_grid(results.system.domain, plane, position[0, 0]), levels=[0.0], colors=BLACK, linewidths=0.8
     )
@@ -43,7 +43,7 @@ def draw_paths(axes: Axes, results: Results, plane: ViewPlane) -> None:
 
 def _draw_bodies(axes: Axes, results: Results, plane: ViewPlane, state: int, *, filled: bool) -> None:
     many = len(results.names) > MOST_LINES
-    places = zip(results.system.bodies, results.vectors("")[state], rotations(results, state), strict=True)
+    places = zip(results.system.bodies, results.quantity("position")[state], rotations(results, state), strict=True)
     for i, (body, centre, turn) in enumerate(places):
         colour = BLUE if many else PALETTE[i]
         for curve in cut(body, centre, turn, plane, centre):

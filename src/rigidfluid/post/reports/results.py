@@ -16,7 +16,7 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.system import System
 from rigidfluid.core.output.checkpoint import read_scene
 from rigidfluid.core.output.history import History
-from rigidfluid.core.output.records import Row, columns, joint_coordinates, moving
+from rigidfluid.core.output.records import Row, columns, joint_coordinates, moving, quantity_columns
 from rigidfluid.core.output.summary_file import read_summary, unreadable
 from rigidfluid.core.output.tables import KINDS, read_rows, table_path
 from rigidfluid.core.output.vtu import read_pvd
@@ -97,15 +97,9 @@ class Results:
             raise OutputError("--follow", name, f"a body: {', '.join(self.names[:20])}", "Name one of them.")
         return self.names.index(name)
 
-    @property
-    def orientation(self) -> FloatArray:
-        """Angles (s, n, 1), in 3D quaternions (s, n, 4)."""
-        names = ("angle",) if self.system.dimension == 2 else ("qw", "qx", "qy", "qz")
-        return np.stack([self.bodies[name] for name in names], axis=-1)
-
-    def vectors(self, prefix: str) -> FloatArray:
-        """A vector of the table of bodies, (s, n, d): ``""`` position, ``v`` velocity, ``f`` fluid, ``cf`` contact."""
-        return np.stack([self.bodies[prefix + axis] for axis in self.axes], axis=-1)
+    def quantity(self, name: str) -> FloatArray:
+        """One of the `quantity_columns` of all bodies, its components last, (s, n, d), (s, n, k) or (s, n, q)."""
+        return np.stack([self.bodies[column] for column in quantity_columns(self.system.dimension)[name]], axis=-1)
 
 
 def read_results(folder: Path, *, motion_only: bool = False, model: Model | None = None) -> Results:

@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.output.records import quantity_columns
 from rigidfluid.post.reports.curves import add_legend, draw_bodies
 from rigidfluid.post.reports.results import Results
 from rigidfluid.post.reports.style import fluid_and_contacts, time_panels
@@ -20,7 +21,7 @@ def turned(results: Results) -> FloatArray:
     if results.system.dimension == 2:
         angle = results.bodies["angle"]
         return np.asarray(angle - angle[0])
-    now = results.orientation
+    now = results.quantity("orientation")
     cosine = np.abs(np.sum(now * now[0], axis=-1))
     return np.asarray(2.0 * np.arccos(np.minimum(cosine, 1.0)))
 
@@ -53,7 +54,7 @@ def torque_plot(results: Results) -> Figure:
     """Torques about the centres of bodies that turn, by the fluid and by contacts side by side, to the same scale."""
     chosen = turning(results)
     names = _names(results, chosen)
-    parts = ("t",) if results.system.dimension == 2 else ("tx", "ty", "tz")
+    parts = quantity_columns(results.system.dimension)["torque"]
     figure, panels = fluid_and_contacts(len(parts))
     for part, (left, right) in zip(parts, panels, strict=True):
         draw_bodies(left, results.time, results.bodies[part][:, chosen], names)

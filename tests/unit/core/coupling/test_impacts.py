@@ -13,7 +13,7 @@ from rigidfluid.core.coupling.stirring import FELT, STORED, impact_tick
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.state import ErrorEstimate, State
-from rigidfluid.core.run.impacts import HALVINGS, TOLERATED, is_unresolved, level_after_impact
+from rigidfluid.core.run.impacts import MOST_HALVINGS, TOLERATED_FRICTION, is_unresolved, level_after_impact
 from rigidfluid.core.run.simulation import Simulation
 
 pytestmark = pytest.mark.long
@@ -46,16 +46,17 @@ def test_what_comes_in_counts_as_put_in_and_what_goes_out_does_not(state):
 
 
 def test_an_impact_that_takes_too_much_halves_the_step_a_few_times(state):
-    too_much, enough = path(state, 1.01 * TOLERATED * PUT_IN), path(state, 0.99 * TOLERATED * PUT_IN)
-    assert [is_unresolved(state, too_much, level) for level in range(HALVINGS + 1)] == [True] * HALVINGS + [False]
+    too_much, enough = path(state, 1.01 * TOLERATED_FRICTION * PUT_IN), path(state, 0.99 * TOLERATED_FRICTION * PUT_IN)
+    halved = [is_unresolved(state, too_much, level) for level in range(MOST_HALVINGS + 1)]
+    assert halved == [True] * MOST_HALVINGS + [False]
     assert not is_unresolved(state, enough, 0)
 
 
 def test_halvings_count_from_the_level_that_a_tolerance_asked_for(state):
     shorter = replace(state, estimate=ErrorEstimate(9, 2, 0.0, 0.0, 1.0, 1.0))
-    too_much = path(state, 1.01 * TOLERATED * PUT_IN)
-    found = [is_unresolved(shorter, too_much, level) for level in range(HALVINGS + 3)]
-    assert found == [True] * (HALVINGS + 2) + [False]
+    too_much = path(state, 1.01 * TOLERATED_FRICTION * PUT_IN)
+    found = [is_unresolved(shorter, too_much, level) for level in range(MOST_HALVINGS + 3)]
+    assert found == [True] * (MOST_HALVINGS + 2) + [False]
 
 
 @pytest.mark.parametrize(

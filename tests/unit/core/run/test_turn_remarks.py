@@ -10,7 +10,7 @@ from extreme_wet import floor_hit
 
 import rigidfluid
 from rigidfluid.core.output.history import History
-from rigidfluid.core.run.turn_remarks import TOLERANCE
+from rigidfluid.core.run.turn_remarks import ADVISED_TOLERANCE
 
 pytestmark = pytest.mark.long
 
@@ -44,8 +44,8 @@ def test_halving_a_step_of_many_radians_does_not_help_and_the_step_that_is_named
 
 def test_steps_by_the_tolerance_that_is_named_keep_the_energy() -> None:
     (remark,) = remarks(spun(1e-3))
-    assert remark["remedy"].endswith(f"or time.tolerance to {TOLERANCE:g}.")
-    by_tolerance = spun(1e-3, tolerance=TOLERANCE)
+    assert remark["remedy"].endswith(f"or time.tolerance to {ADVISED_TOLERANCE:g}.")
+    by_tolerance = spun(1e-3, tolerance=ADVISED_TOLERANCE)
     assert by_tolerance.summary["energy"]["lost"] < 0.005
     assert remarks(by_tolerance) == []
 

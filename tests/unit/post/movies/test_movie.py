@@ -89,7 +89,7 @@ def grey(results: Results, state: int, **look: object) -> tuple[np.ndarray, np.n
 def test_bodies_are_where_they_were_and_as_large(wet: Path) -> None:
     results = read_results(wet, motion_only=True)
     points, area = grey(results, -1)
-    np.testing.assert_allclose(points.mean(axis=0), results.vectors("")[-1, 0], atol=0.01)
+    np.testing.assert_allclose(points.mean(axis=0), results.quantity("position")[-1, 0], atol=0.01)
     assert area == pytest.approx(results.system.bodies[0].volume, rel=0.05)
 
 
@@ -98,7 +98,7 @@ def test_a_picture_that_follows_a_body_has_it_in_the_middle(wet: Path) -> None:
     shot = shot_of(results, "disk", None)
     for state in (0, -1):
         grid = shot.grid(state, 100)
-        middle = grid.coordinates(results.vectors("")[state, 0])
+        middle = grid.coordinates(results.quantity("position")[state, 0])
         np.testing.assert_allclose(middle, (0.5 * (grid.columns - 1), 0.5 * (grid.rows - 1)), atol=1e-9)
 
 
@@ -110,7 +110,7 @@ def test_the_mark_turns_with_the_body(dry: Path) -> None:
         picture = np.ones((grid.rows, grid.columns, 3))
         draw_bodies(picture, grid, results, 0)
         j, i = np.nonzero((picture == 0.0).all(axis=2))
-        way = grid.origin + i[:, None] * grid.right + j[:, None] * grid.up - results.vectors("")[0, 0]
+        way = grid.origin + i[:, None] * grid.right + j[:, None] * grid.up - results.quantity("position")[0, 0]
         way = way[np.linalg.norm(way, axis=1) < 0.11].mean(axis=0)
         assert np.arctan2(way[1], way[0]) == pytest.approx(angle, abs=0.1)
 
@@ -142,7 +142,7 @@ def test_bodies_are_drawn_apart_from_what_is_outside(wet: Path) -> None:
     assert not np.all(picture == to_rgb(BODY), axis=2).any()
     draw_bodies(picture, grid, results, -1)
     grey = np.argwhere(np.all(picture == to_rgb(BODY), axis=2))
-    where = grid.origin + grey[:, 1:] * grid.right + grey[:, :1] * grid.up - results.vectors("")[-1, 0]
+    where = grid.origin + grey[:, 1:] * grid.right + grey[:, :1] * grid.up - results.quantity("position")[-1, 0]
     assert len(grey) > 50
     assert np.linalg.norm(where, axis=1).max() < results.system.bodies[0].bounding_radius
     dry = ground(results, grid)
@@ -157,7 +157,7 @@ def test_3d_is_cut_in_the_plane_of_gravity_and_motion(tmp_path: Path) -> None:
     shot = shot_of(results, None, None)
     assert shot.plane.up.tolist() == [0.0, 1.0, 0.0]
     grid = shot.grid(0, 60)
-    assert abs(grid.plane.normal @ (results.vectors("")[0, 0] - grid.origin)) < 1e-12
+    assert abs(grid.plane.normal @ (results.quantity("position")[0, 0] - grid.origin)) < 1e-12
     assert len(frames(movie(tmp_path / "run", tmp_path / "a.gif", Look(show="vorticity", longer=60)))) == 3
 
 

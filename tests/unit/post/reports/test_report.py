@@ -121,7 +121,7 @@ def test_a_run_that_goes_on_has_a_report(copy: Path, torn: str) -> None:
     states = len(whole.time) - (torn != "steps")
     assert len(results.time) == len(results.energy["time"]) == len(results.contact_counts) == states
     assert results.contact_counts.sum() == 0.0
-    np.testing.assert_array_equal(results.vectors("v"), whole.vectors("v")[:states])
+    np.testing.assert_array_equal(results.quantity("velocity"), whole.quantity("velocity")[:states])
     page = unescape(report(copy)[-1].read_text(encoding="utf-8"))
     assert f"goes on, or was stopped; resumed by --resume, at {results.time[-1]:.5g} of 0.03" in page
     assert page.count("data:image/png;base64,") == len(FIELD_PICTURES | OF_A_FALL)

@@ -138,7 +138,7 @@ def tilted(tmp_path_factory: pytest.TempPathFactory) -> Results:
 
 def test_an_ellipsoid_is_cut_in_its_true_ellipse(tilted: Results) -> None:
     plane, body = view_plane(tilted), tilted.system.bodies[0]
-    centre, turn = tilted.vectors("")[-1, 0], rotations(tilted, -1)[0]
+    centre, turn = tilted.quantity("position")[-1, 0], rotations(tilted, -1)[0]
     (curve,) = cut(body, centre, turn, plane, centre)
     own = (curve - plane.flat(centre)) / (0.4, 0.1)
     np.testing.assert_allclose(np.linalg.norm(own, axis=1), 1.0, atol=0.01)
@@ -151,7 +151,7 @@ def test_an_ellipsoid_is_cut_in_its_true_ellipse(tilted: Results) -> None:
 def test_the_smallest_gap_is_found_in_the_plane_and_in_no_other(gap: float, tilted: Results) -> None:
     height = np.full_like(tilted.bodies["y"], 0.1 + gap)
     tilted = replace(tilted, bodies=tilted.bodies | {"y": height, "gap": height - 0.1})
-    plane, centre = view_plane(tilted), tilted.vectors("")[-1, 0]
+    plane, centre = view_plane(tilted), tilted.quantity("position")[-1, 0]
     middle = gap_middle(tilted, -1, 0, plane)
     assert middle is not None
     np.testing.assert_allclose(middle, [plane.flat(centre)[0], 0.5 * gap], atol=1e-2 * gap)
@@ -273,6 +273,6 @@ def test_fields_of_a_3d_run_are_quadratic_for_others(wet: Path) -> None:
     read = meshio.read(results.series[-1][1])
     assert set(read.cells_dict) == {"tetra10"}
     speed = np.linalg.norm(read.point_data["velocity"], axis=1)
-    on_body = np.isclose(np.linalg.norm(read.points - results.vectors("")[-1, 0], axis=1), 0.4, atol=1e-6)
+    on_body = np.isclose(np.linalg.norm(read.points - results.quantity("position")[-1, 0], axis=1), 0.4, atol=1e-6)
     assert on_body.sum() > 20
-    np.testing.assert_allclose(speed[on_body], np.linalg.norm(results.vectors("v")[-1, 0]), rtol=0.05)
+    np.testing.assert_allclose(speed[on_body], np.linalg.norm(results.quantity("velocity")[-1, 0]), rtol=0.05)
