@@ -11,7 +11,7 @@ SUBJECTS = {
         "falling_disk": "A disk falls in a channel: velocity and times compared with four published computations",
         "two_disks": "Two light disks draft, kiss and tumble: case 5 of the paper",
         "drafting_kissing_tumbling": "Two heavier disks: path until the kiss compared with Glowinski et al. (2001)",
-        "settling_cylinder": "A cylinder leaves a channel's wall: terminal speed and drag compared with published values",
+        "settling_cylinder": "A cylinder leaves a channel's wall: terminal speed and drag compared with published ones",
         "ellipse_xia": "An ellipse settles in a channel: path and angle compared with Xia et al. (2009)",
         "ellipse_in_channel": "An ellipse in a narrow channel: how mesh, step and law affect its oscillations",
         "hundred_disks": "A hundred disks settle: a movie, energies and the cost",
