@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Literal
 
 from rigidfluid.errors import SceneError
+from rigidfluid.python_process import environment, python
 
 Kind = Literal["cad", "mesh"]
 
@@ -42,11 +43,10 @@ def require_survival(kind: Kind, path: Path, dimension: int) -> None:
 def _outcome(kind: Kind, path: Path, dimension: int, size: int, _changed: int) -> str:
     """End of a trial in words, empty where it was a good one."""
     most = _MEMORY + _PER_BYTE * size
-    command = [sys.executable, "-m", "rigidfluid.domains.trial", kind, str(path), str(dimension), str(most)]
+    command = python("-m", "rigidfluid.domains.trial", kind, str(path), str(dimension), str(most))
+    silent = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     try:
-        ended = subprocess.run(
-            command, timeout=SECONDS, check=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-        )
+        ended = subprocess.run(command, timeout=SECONDS, check=False, env=environment(), **silent)
     except subprocess.TimeoutExpired:
         return f"took more than {SECONDS:g} seconds"
     if ended.returncode < 0:

@@ -39,6 +39,14 @@ def test_a_drawing_that_ends_its_reader_is_refused(drawn: Path) -> None:
         Cad(CadOptions(file=str(drawn), faces={"wall": 1}), 3)
 
 
+def test_files_of_the_working_folder_are_no_modules_of_a_trial(
+    drawn: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    (tmp_path / "signal.py").write_text("import os\nos.abort()", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert Cad(CadOptions(file=str(drawn), faces={"wall": 1, "2": 2, "3": 3}), 3).volume > 0.0
+
+
 @pytest.mark.long
 def test_a_drawing_that_is_read_for_ever_is_refused(drawn: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """So is half of it."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import subprocess
-import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -20,8 +19,9 @@ from rigidfluid.core.mesh.surface_mesh import surface_mesh
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, check_volume, orient
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.errors import MeshError
+from rigidfluid.python_process import environment, python
 
-MESHER = [sys.executable, "-m", "rigidfluid.core.mesh.netgen_fill"]
+MESHER = python("-m", "rigidfluid.core.mesh.netgen_fill")
 """The command that fills what one file holds and writes the cells to another."""
 
 
@@ -65,6 +65,7 @@ def filled(surface: Mesh, size: float, growth: float, timeout: float) -> tuple[F
                 check=False,
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,
+                env=environment(),
             )
         except subprocess.TimeoutExpired as error:
             remedy = f"Raise mesh.mesher_timeout if the mesh is large. {REMEDY}"

@@ -8,7 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from rigidfluid.core.output.disk import writing
-from rigidfluid.post.python_process import environment, failure, python
+from rigidfluid.python_process import environment, failure, python
 
 _POLL = 1.0
 """Seconds between two looks at the process."""

@@ -14,7 +14,7 @@ from threading import Lock
 from typing import IO
 
 from rigidfluid.errors import ArgumentError
-from rigidfluid.post.python_process import environment, failure, python
+from rigidfluid.python_process import environment, failure, python
 from rigidfluid.post.studies.rows import Row
 from rigidfluid.post.studies.strict_table import Settings
 from rigidfluid.post.studies.subject import Subject

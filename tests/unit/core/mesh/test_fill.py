@@ -174,6 +174,12 @@ def test_a_mesher_without_end_is_stopped(monkeypatch):
         fill_mesh(*in_a_dish(2), timeout=0.5)
 
 
+def test_files_of_the_working_folder_are_no_modules_of_the_mesher(monkeypatch, tmp_path):
+    (tmp_path / "numpy.py").write_text("raise SystemExit(9)", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert len(fill_mesh(*in_a_dish(2)).cells) > 0
+
+
 def test_a_mesher_that_breaks_off_is_told(monkeypatch):
     monkeypatch.setattr(fill, "MESHER", [sys.executable, "-c", "import os; os.abort()"])
     with pytest.raises(MeshError, match=r"Netgen failed \(its process ended with code -6\)"):

@@ -18,7 +18,7 @@ from typer.testing import CliRunner
 from rigidfluid.cli import app
 from rigidfluid.errors import ArgumentError, SceneError
 from rigidfluid.post.progress import RunsProgress
-from rigidfluid.post.python_process import environment, python
+from rigidfluid.python_process import environment, python
 from rigidfluid.post.studies import load_study, run_study
 from rigidfluid.post.studies.processes import MOST_JOBS, ONE_THREAD, run_apart
 from rigidfluid.post.studies.rows import Row
