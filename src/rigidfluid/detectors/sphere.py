@@ -40,6 +40,7 @@ class SphereDetector(Detector):
 
         super().__init__(options, bodies, walls)
         self._radii = np.array([_radius(index, body) for index, body in enumerate(bodies)], dtype=float)
+        self._all_radii = np.append(self._radii, np.inf)  # behind those of the bodies that of any flat wall
         self._pairs = NearPairs(self._radii)
         flat = [(wall.surface, plane) for wall in walls if (plane := wall.shape.plane)]
         self._surfaces = np.array([surface for surface, _ in flat], dtype=np.int64)
@@ -66,8 +67,6 @@ class SphereDetector(Detector):
         balls, walls = Balls(position, radii), FlatWalls(self._planes.reshape(-1, 2, position.shape[1]), self._surfaces)
         a, b, gap = near_surfaces(balls, (pairs.start, pairs.second), walls, reach)
         point_a, point_b, normal = points_and_normals(balls, walls, a, b)
-        # behind the bodies' radii that of any flat wall
-        all_radii = np.append(radii, np.inf)
         return Contacts(
             body_a=a,
             body_b=b,
@@ -76,7 +75,7 @@ class SphereDetector(Detector):
             normal=normal,
             gap=gap,
             radius_a=radii[a],
-            radius_b=all_radii[np.minimum(b, len(radii))],
+            radius_b=self._all_radii[np.minimum(b, len(radii))],
             at_wall=b >= len(radii),
         )
 

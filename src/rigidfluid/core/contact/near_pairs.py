@@ -60,7 +60,7 @@ class NearPairs:
 
     def _made(self, position: FloatArray, reach: float) -> PairList:
         first, second = near_pairs(position, self._radii, reach)
-        order = np.lexsort((second, first))
+        order = np.argsort(first * len(self._radii) + second)
         start = np.searchsorted(first[order], np.arange(len(self._radii) + 1))
         return PairList(start, second[order], position.copy(), reach)
 

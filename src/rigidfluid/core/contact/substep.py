@@ -10,9 +10,8 @@ import numpy as np
 
 from rigidfluid.core.contact.delassus import delassus
 from rigidfluid.core.contact.stiffness import contacts_on_the_way, greatest_stiffness
-from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.wall import WallVelocities
-from rigidfluid.core.mechanics.rigid import cross
 from rigidfluid.core.model.contacts import middle, select
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.interfaces import ForceLaw
@@ -261,15 +260,10 @@ def relative_velocity(contacts: Contacts, pose: Pose, twist: Twist) -> FloatArra
 
     Walls count as at rest, since no approach depends on how they slide in themselves.
     """
-    point = middle(contacts)
-    velocity = _point_velocity(pose, twist, contacts.body_a, point)
-    on_body = contacts.body_b < len(pose.position)
-    velocity[on_body] -= _point_velocity(pose, twist, contacts.body_b[on_body], point[on_body])
-    return velocity
+    from rigidfluid.core.contact.pair_velocity import relative_velocities
 
-
-def _point_velocity(pose: Pose, twist: Twist, body: IntArray, point: FloatArray) -> FloatArray:
-    return twist.velocity[body] + cross(twist.angular_velocity[body], point - pose.position[body])
+    a, b = (contacts.body_a, contacts.point_a), (contacts.body_b, contacts.point_b)
+    return np.asarray(relative_velocities(pose.position, twist.velocity, twist.angular_velocity, *a, *b))
 
 
 def _inverse_masses(contacts: Contacts, dynamics: BodyDynamics) -> FloatArray:

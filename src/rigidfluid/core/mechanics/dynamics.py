@@ -61,6 +61,8 @@ class DryDynamics(OwnMotions):
 
     @property
     def twist(self) -> Twist:
+        if self._round:  # the same numbers as by the matrices
+            return Twist(self._velocity.copy(), self._inverse[:, 0, :1] * self._momentum)
         return Twist(self._velocity.copy(), np.einsum("nij,nj->ni", self._inverse_inertia(), self._momentum))
 
     def inverse_mass_along(self, body: IntArray, direction: FloatArray) -> FloatArray:
