@@ -7,6 +7,11 @@ import signal
 import sys
 from pathlib import Path
 
+ONE_THREAD = dict.fromkeys(
+    ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
+)  # fmt: skip
+"""Variables of processes that use one thread each."""
+
 
 def python(*arguments: str) -> list[str]:
     """The command that runs this interpreter.

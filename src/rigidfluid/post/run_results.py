@@ -13,15 +13,14 @@ from numpy.typing import NDArray
 from rigidfluid.core.case.load import scene_of_results
 from rigidfluid.core.case.scene_model import Case
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.output.checkpoint import read_scene
 from rigidfluid.core.output.fluid_fields import FluidFields
 from rigidfluid.core.output.history import History, reading
 from rigidfluid.core.output.records import columns
-from rigidfluid.core.output.summary_file import read_summary
+from rigidfluid.core.output.run_document import read_document
 from rigidfluid.core.output.tables import read_columns, read_header, table_path
 from rigidfluid.core.output.vtu import read_pvd, read_vtu
-from rigidfluid.core.output.writer import CHECKPOINT, SERIES, SUMMARY
-from rigidfluid.core.setup.description import IN_PYTHON
+from rigidfluid.core.output.writer import SERIES
+from rigidfluid.core.setup.description import refuse_description
 from rigidfluid.errors import OutputError
 
 
@@ -38,12 +37,7 @@ class RunResults(History):
     """
 
     def __init__(self, folder: Path) -> None:
-        has_ended = (folder / SUMMARY).exists()
-        if not has_ended and not (folder / CHECKPOINT).exists():
-            found = f"neither {SUMMARY} nor {CHECKPOINT}" if folder.is_dir() else "no folder"
-            raise OutputError(str(folder), found, "the folder of a run", "Give the one that the run wrote, its --out.")
-        summary = read_summary(folder / SUMMARY) if has_ended else {}
-        self._document: Mapping[str, Any] = summary["scene"] if has_ended else read_scene(folder / CHECKPOINT)
+        summary, self._document = read_document(folder)
         dimension = self._document["scene"]["dimension"]
         super().__init__(dimension, folder=folder, coordinates=_coordinates(folder, dimension))
         self.summary = summary
@@ -52,9 +46,7 @@ class RunResults(History):
     @property
     def scene(self) -> Case:
         """Scene of the run; raises OutputError for a run of a model made in Python, and as `scene_from_dict` does."""
-        if IN_PYTHON in self._document:
-            found = f"results of the model {self._document['scene']['name']!r}, made in Python"
-            raise OutputError(str(self.folder), found, "results of a scene", "Make the model again as it was made.")
+        refuse_description(self._document, self.folder, "Make the model again as it was made.")
         return scene_of_results(self._document)
 
     @property

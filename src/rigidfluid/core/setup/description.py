@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic import BaseModel
+
+from rigidfluid.errors import OutputError
 
 if TYPE_CHECKING:
     from rigidfluid.core.setup.model import Model
@@ -30,6 +33,13 @@ def describe(model: Model) -> dict[str, Any]:
         "output": _told(model.output),
         IN_PYTHON: {name: _told(getattr(model, name)) for name in names},
     }
+
+
+def refuse_description(tables: Mapping[str, Any], folder: Path, remedy: str) -> None:
+    """Raise OutputError where the ``tables`` of results in a ``folder`` describe a model made in Python."""
+    if IN_PYTHON in tables:
+        found = f"results of the model {tables['scene']['name']!r}, made in Python"
+        raise OutputError(str(folder), found, "results of a scene", remedy)
 
 
 def _told(value: Any) -> Any:

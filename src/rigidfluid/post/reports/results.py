@@ -14,15 +14,15 @@ from rigidfluid.core.case.load import scene_of_results
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.system import System
-from rigidfluid.core.output.checkpoint import read_scene
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import Row, columns, joint_coordinates, moving, quantity_columns
-from rigidfluid.core.output.summary_file import read_summary, unreadable
+from rigidfluid.core.output.run_document import read_document
+from rigidfluid.core.output.summary_file import unreadable
 from rigidfluid.core.output.tables import KINDS, read_rows, table_path
 from rigidfluid.core.output.vtu import read_pvd
-from rigidfluid.core.output.writer import CHECKPOINT, SERIES, SUMMARY
+from rigidfluid.core.output.writer import SERIES, SUMMARY
 from rigidfluid.core.setup.assemble import assemble
-from rigidfluid.core.setup.description import IN_PYTHON
+from rigidfluid.core.setup.description import refuse_description
 from rigidfluid.core.setup.model import Model
 from rigidfluid.errors import OutputError
 from rigidfluid.post.reports.units import Units
@@ -110,12 +110,9 @@ def read_results(folder: Path, *, motion_only: bool = False, model: Model | None
     that names a missing or unreadable file; SceneError or PluginError if the run's scene cannot be built here, as
     without one of its plug-ins.
     """
-    complete = (folder / SUMMARY).exists()
-    if not complete and not (folder / CHECKPOINT).exists():
-        raise unreadable(folder / SUMMARY, f"no file, and no {CHECKPOINT}")
+    summary, told = read_document(folder, NEEDED)
+    complete = bool(summary)
     series = read_pvd(folder / SERIES) if (folder / SERIES).exists() else ()  # before tables, which may grow
-    summary = read_summary(folder / SUMMARY, NEEDED) if complete else {}
-    told = summary["scene"] if complete else read_scene(folder / CHECKPOINT)
     model = _model(told, folder) if model is None else _same(model, told, folder)
     system = assemble(model)
     count, links = len(system.bodies), len(_joint_names(system))
@@ -153,10 +150,8 @@ def _same(model: Model, told: dict[str, Any], folder: Path) -> Model:
 
 
 def _model(tables: dict[str, Any], folder: Path) -> Model:
-    if IN_PYTHON in tables:
-        found = f"results of the model {tables['scene']['name']!r}, made in Python"
-        remedy = "Give the model in Python, to report(folder, model=model) or movie(folder, model=model)."
-        raise OutputError(str(folder), found, "results of a scene", remedy)
+    remedy = "Give the model in Python, to report(folder, model=model) or movie(folder, model=model)."
+    refuse_description(tables, folder, remedy)
     return model_of(scene_of_results(tables))
 
 

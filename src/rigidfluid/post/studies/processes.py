@@ -14,14 +14,10 @@ from threading import Lock
 from typing import IO
 
 from rigidfluid.errors import ArgumentError
-from rigidfluid.python_process import environment, failure, python
 from rigidfluid.post.studies.rows import Row
 from rigidfluid.post.studies.strict_table import Settings
 from rigidfluid.post.studies.subject import Subject
-
-ONE_THREAD = dict.fromkeys(
-    ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
-)  # fmt: skip
+from rigidfluid.python_process import ONE_THREAD, environment, failure, python
 
 MOST_JOBS = 4 * (os.cpu_count() or 1)
 """Largest number of processes: four for each processor, beyond which they only take each other's memory."""

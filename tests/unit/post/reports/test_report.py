@@ -204,9 +204,9 @@ def test_file_cut_off_is_named(copy: Path, name: str) -> None:
 
 
 def test_a_folder_of_something_else_is_refused(tmp_path: Path) -> None:
-    refused(tmp_path, "summary.json", "Run the scene")
+    refused(tmp_path, "neither summary.json nor state.h5", "run the scene again")
     (tmp_path / "summary.json").write_text("[1]")
-    refused(tmp_path, "summary.json", "Run the scene")
+    refused(tmp_path, "summary.json", "Run the scene again")
 
 
 def test_a_summary_without_a_figure_is_refused(copy: Path) -> None:

@@ -18,13 +18,13 @@ from typer.testing import CliRunner
 from rigidfluid.cli import app
 from rigidfluid.errors import ArgumentError, SceneError
 from rigidfluid.post.progress import RunsProgress
-from rigidfluid.python_process import environment, python
 from rigidfluid.post.studies import load_study, run_study
-from rigidfluid.post.studies.processes import MOST_JOBS, ONE_THREAD, run_apart
+from rigidfluid.post.studies.processes import MOST_JOBS, run_apart
 from rigidfluid.post.studies.rows import Row
 from rigidfluid.post.studies.strict_table import Settings
 from rigidfluid.post.studies.subject import Outcome, Target
 from rigidfluid.post.studies.table import read_rows
+from rigidfluid.python_process import ONE_THREAD, environment, python
 
 DENSITIES = "[parameters]\nbody.0.density = [1.0, -1.0, 2.0, 3.0]\n"
 ANSWERS = ("answer", "refuse", "fault", "print", "kill")
