@@ -104,7 +104,7 @@ class SharedMesh:
         return Reached(march, row, key, facet)
 
     def _addressed(self, rows: IntArray, *columns: NDArray[Any]) -> list[tuple[NDArray[Any], ...]]:
-        """For each other rank the border's vertices ``rows`` that it has as well: rows in its border, and ``columns``."""
+        """For each other rank the border's vertices ``rows`` that it has too: rows in its border, and ``columns``."""
         there = [self._rows_there[rank][rows] for rank in range(self._ranks.size)]
         return [(row[row >= 0], *(column[row >= 0] for column in columns)) for row in there]
 
