@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NoReturn
-
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
@@ -16,27 +14,24 @@ from rigidfluid.errors import SceneError
 _LEAST_VOLUME = 1e-9
 """Volume over that of the cube around the body, below which a shape is flat [1]."""
 
-_GOLDEN = np.array([0.7548776662466927, 0.5698402909980532])
-"""Steps of the evenest sequence of points in a square (M. Roberts, 2018)."""
+_R2_STEPS = np.array([0.7548776662466927, 0.5698402909980532])
+"""Steps, modulo 1, of the sequence R₂, which fills a square evenly (M. Roberts, 2018)."""
 
 
 class FacetBody(Body):
     """The inside of a closed surface of facets, moved so that its centre of mass is the origin.
 
-    ``facets`` are closed, in any frame and of either sense, and ``key`` is the one that they are from, for messages. A
-    surface that crosses itself or encloses nothing raises SceneError.
+    ``facets`` are closed, in any frame, with normals all outwards or all inwards; ``key`` is the option that they come
+    from, for messages. A surface that crosses itself or encloses nothing raises SceneError.
     """
 
     def __init__(self, options: PartOptions, facets: Facets, key: str) -> None:
         super().__init__(options, facets.points.shape[1])
-        self._key = key
-        self._refuse_crossings(facets)
-        size = float(np.max(np.ptp(facets.points, axis=0)))
-        if not abs(enclosed_volume(facets.points, facets.vertices)) > _LEAST_VOLUME * size**self.dimension:
-            self._refuse("facets that enclose nothing", "a shape of some volume", "Check the corners.")
+        _refuse_crossings(facets, f"body.{key}")
+        _refuse_flat(facets, f"body.{key}")
         moments = facet_moments(facets)
-        vertices = facets.vertices if moments.volume > 0 else facets.vertices[::-1, ::-1]
-        own = Facets(facets.points - moments.centre, np.ascontiguousarray(vertices), np.zeros_like(facets.markers))
+        outwards = facets.vertices if moments.volume > 0 else facets.vertices[::-1, ::-1]
+        own = Facets(facets.points - moments.centre, np.ascontiguousarray(outwards), np.zeros_like(facets.markers))
         self._surface = FacetSurface(own)
         self._given_centre = moments.centre
         self._volume, self._unit_inertia = abs(moments.volume), unit_inertia(moments.second)
@@ -79,33 +74,34 @@ class FacetBody(Body):
         return self._surface.normal(points)
 
     def sample_surface(self, count: int) -> FloatArray:
-        """``count`` points, as many on each facet as is due to its area, and the vertices if they are no more
-        [length]."""
-        corners = self.facets.points[self.facets.vertices]
-        areas = np.cumsum(np.linalg.norm(area_vectors(self.facets.points, self.facets.vertices), axis=1))
-        at = (np.arange(count) + 0.5) * areas[-1] / count
-        facet = np.searchsorted(areas, at)
+        """``count`` points spread evenly over the area, and before them the vertices if these are no more [length]."""
+        vertices = self.facets.points
+        area = np.linalg.norm(area_vectors(vertices, self.facets.vertices), axis=1)
+        ends = np.cumsum(area)  # of the facets laid end to end, each as long as its area
+        place = (np.arange(count) + 0.5) * ends[-1] / count
+        facet = np.searchsorted(ends, place)
         if self.dimension == 2:
-            share = (areas[facet] - at) / np.diff(areas, prepend=0.0)[facet]
+            share = (ends[facet] - place) / np.diff(ends, prepend=0.0)[facet]
             weights = np.stack([share, 1.0 - share], axis=1)
         else:
-            u, v = ((np.arange(count)[:, None] + 0.5) * _GOLDEN % 1.0).T
+            u, v = ((np.arange(count)[:, None] + 0.5) * _R2_STEPS % 1.0).T
             weights = np.stack([1.0 - np.sqrt(u), np.sqrt(u) * (1.0 - v), np.sqrt(u) * v], axis=1)
-        points = np.einsum("ni,nij->nj", weights, corners[facet])
-        few = len(self.facets.points) <= count
-        return np.concatenate([self.facets.points, points]) if few else np.asarray(points)
+        points: FloatArray = np.einsum("ni,nij->nj", weights, vertices[self.facets.vertices[facet]])
+        return np.concatenate([vertices, points]) if len(vertices) <= count else points
 
-    def _refuse_crossings(self, facets: Facets) -> None:
-        from rigidfluid.core.geometry.crossings import first_crossing
 
-        crossing = first_crossing(facets.points, facets.vertices)
-        if crossing is not None:
-            one, other = facets.points[facets.vertices[list(crossing)]].tolist()
-            self._refuse(
-                f"a surface that crosses itself, where the facets {one} and {other} meet",
-                "facets that meet at their edges alone",
-                "Move the corners, or make it several bodies.",
-            )
+def _refuse_crossings(facets: Facets, field: str) -> None:
+    from rigidfluid.core.geometry.crossings import first_crossing
 
-    def _refuse(self, found: str, allowed: str, remedy: str) -> NoReturn:
-        raise SceneError(f"body.{self._key}", found, allowed, remedy)
+    crossing = first_crossing(facets.points, facets.vertices)
+    if crossing is not None:
+        one, other = facets.points[facets.vertices[list(crossing)]].tolist()
+        found = f"a surface that crosses itself, where the facets {one} and {other} meet"
+        remedy = "Move the corners, or make it several bodies."
+        raise SceneError(field, found, "facets that meet at their edges alone", remedy)
+
+
+def _refuse_flat(facets: Facets, field: str) -> None:
+    size = float(np.max(np.ptp(facets.points, axis=0)))
+    if not abs(enclosed_volume(facets.points, facets.vertices)) > _LEAST_VOLUME * size ** facets.points.shape[1]:
+        raise SceneError(field, "facets that enclose nothing", "a shape of some volume", "Check the corners.")

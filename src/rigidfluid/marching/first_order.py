@@ -44,9 +44,8 @@ def march_first_order(points, adjacency, band, work, touched):
                 if state == KNOWN:
                     continue
                 value = _least_value(points, cell, other, vertex, work)
-                if state == TRIAL and value >= work.key[other]:
-                    continue
-                if not in_band(points, neighbours, other, value, band):
+                is_nearer = state != TRIAL or value < work.key[other]
+                if not is_nearer or not in_band(points, neighbours, other, value, band):
                     continue
                 work.key[other], work.facet[other] = value, work.facet[vertex]
                 if state == TRIAL:

@@ -13,7 +13,7 @@ from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.model.types import Advance, FluidState, Mesh, Step, Twist, Wrench
 from rigidfluid.taylor_hood.boundary import FaceFlow, pressure_load
 from rigidfluid.taylor_hood.container import container_velocity
-from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution, with_masses
+from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution, masses_alone
 from rigidfluid.taylor_hood.discretisation import Discretisation, dissipation, kinetic_energy, stress_power
 from rigidfluid.taylor_hood.grad_div import grad_div_dissipation
 from rigidfluid.taylor_hood.links import solve_linked
@@ -143,11 +143,11 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
     )
     if density == 0.0 or d0 == 0.0:
         return matrix
-    matrix = with_masses(matrix, d0)
-    if matrix.at_once is None or not step.turning.any():
-        return matrix
-    turned = density * discretisation.velocity_response(matrix.at_once, step.turning, _TURNING_TOLERANCE)
-    return replace(matrix, advection=matrix.advection + turned, flow=matrix.flow + turned)
+    masses = masses_alone(matrix, d0)
+    if not step.turning.any():
+        return replace(matrix, masses=masses)
+    turned = density * discretisation.velocity_response(masses, step.turning, _TURNING_TOLERANCE)
+    return replace(matrix, advection=matrix.advection + turned, flow=matrix.flow + turned, masses=masses)
 
 
 def _system(equations: Equations, on_faces: FloatArray) -> CoupledSystem:

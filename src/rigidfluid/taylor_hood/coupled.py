@@ -21,8 +21,8 @@ class CoupledMatrix:
     ``points`` (vertices + K, d): the mesh's geometry; ``node_points`` (nodes, d). ``advection`` a and ``flow`` c,
     (nodes, d), already hold the density: c is what flows past the container, a what flows past the mesh; the term of
     ∇·c keeps convection from making energy.
-    ``position``, ``mass_matrix``, ``prescribed`` are of all motions that carry the bodies, as in `Step`. ``at_once``:
-    the masses alone of a step's matrix, 𝓜, the matrix of inviscid impulse responses; None where it is not wanted.
+    ``position``, ``mass_matrix``, ``prescribed`` are of all motions that carry the bodies, as in `Step`. ``masses``: 𝓜,
+    the masses alone of a step's matrix, by which bodies and fluid respond to impulses at once; None where not wanted.
     """
 
     points: FloatArray
@@ -35,13 +35,13 @@ class CoupledMatrix:
     mass_matrix: FloatArray
     prescribed: BoolArray
     frame: FloatArray
-    at_once: CoupledMatrix | None = None
+    masses: CoupledMatrix | None = None
 
 
-def with_masses(matrix: CoupledMatrix, d0: float) -> CoupledMatrix:
-    """A step's ``matrix`` with the BDF weight ``d0`` [1/time], and its masses alone."""
+def masses_alone(matrix: CoupledMatrix, d0: float) -> CoupledMatrix:
+    """Masses of a step's ``matrix``, without its BDF weight ``d0`` [1/time]."""
     still = np.zeros_like(matrix.advection)
-    masses = replace(
+    return replace(
         matrix,
         frame=np.zeros_like(matrix.frame),
         inertia=matrix.inertia / d0,
@@ -50,7 +50,6 @@ def with_masses(matrix: CoupledMatrix, d0: float) -> CoupledMatrix:
         flow=still,
         mass_matrix=matrix.mass_matrix / d0,
     )
-    return replace(matrix, at_once=masses)
 
 
 @dataclass(frozen=True)

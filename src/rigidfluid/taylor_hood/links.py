@@ -26,10 +26,10 @@ _TOO_WRONG = 1e-4
 def solve_linked(
     discretisation: Discretisation, system: CoupledSystem, links: Links, tolerance: float
 ) -> tuple[Solution, FloatArray]:
-    """Solve for forces λ with C u + κ λ = r: (C S⁻¹Cᵀ + κ) λ = r - C u₀, u₀ the twists without them.
+    """Solve for forces λ with C u + κ λ = r: (C W Cᵀ + κ) λ = r - C u₀, u₀ the twists without them.
 
-    S⁻¹ are the twists that wrenches give by the step's matrix. They are known to some digits, and so this is done again
-    for what is still missing.
+    W are the twists by unit wrenches, from the step's matrix 𝓚. They are known to some digits, and so this is done
+    again for what is still missing.
 
     Parameters
     ----------

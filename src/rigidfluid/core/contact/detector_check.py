@@ -9,7 +9,7 @@ import numpy as np
 from rigidfluid.core.contact.broad_phase import nearest_others
 from rigidfluid.core.contact.proximity import detect
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.geometry.guarded import told_of
+from rigidfluid.core.geometry.guarded import part_error
 from rigidfluid.core.geometry.surface import Surface
 from rigidfluid.core.geometry.wrong import Wrong
 from rigidfluid.core.mechanics.rigid import rotation_matrices
@@ -77,14 +77,14 @@ def _compare(system: System, pose: Pose, mesh: Mesh | None, sides: tuple[_Side, 
     if len(rows) == 0:
         _refuse_contradictory(sides)
         wrong = Wrong(f"no contact of {names}", f"one with a gap of {reach:.6g} at most, which a naive search finds")
-        raise told_of(system.detector, "detect", wrong)
+        raise part_error(system.detector, "detect", wrong)
     for side, points in ((a, found.point_a[rows]), (b, found.point_b[rows])):
         off, allowed = float(np.abs(side.distance(points)).max()), side.off + _FAR * reach
         if off > allowed:
             _refuse_contradictory(sides)
             surface = system.surfaces[side.number]
             wrong = Wrong(f"a contact of {names} {off:.3g} off {surface}", f"points on it, or {allowed:.3g} off")
-            raise told_of(system.detector, "detect", wrong)
+            raise part_error(system.detector, "detect", wrong)
 
 
 def _refuse_contradictory(sides: tuple[_Side, _Side]) -> None:
@@ -94,7 +94,7 @@ def _refuse_contradictory(sides: tuple[_Side, _Side]) -> None:
             off = float(np.abs(side.distance(side.samples())).max())
             if off > _ROUNDING * side.shape.bounding_radius:
                 wrong = Wrong(f"points that are {off:.3g} from the surface by its `signed_distance`", "points on it")
-                raise told_of(side.shape, "sample_surface", wrong)
+                raise part_error(side.shape, "sample_surface", wrong)
 
 
 def _nearest_pairs(system: System, pose: Pose) -> list[tuple[int, int]]:

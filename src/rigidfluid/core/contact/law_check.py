@@ -9,7 +9,7 @@ import numpy as np
 from rigidfluid.core.contact.gap_curvature import with_effective_radii
 from rigidfluid.core.contact.representative_contacts import contacts_at_gaps, pair_contacts, wall_contacts
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
-from rigidfluid.core.geometry.guarded import told_of
+from rigidfluid.core.geometry.guarded import part_error
 from rigidfluid.core.geometry.wrong import Wrong
 from rigidfluid.core.model.contacts import joined, select
 from rigidfluid.core.model.interactions import Interaction
@@ -55,14 +55,14 @@ def _check_law(law: ForceLaw, contacts: Contacts) -> None:
     across = np.linalg.norm(force - along[:, None] * contacts.normal, axis=1)
     if np.any(across > _TOLERANCE * np.abs(along)):
         wrong = _wrong(contacts, across, across > 0.0, "forces along the normal, and damping besides")
-        raise told_of(law, "force", wrong)
+        raise part_error(law, "force", wrong)
     _check_slope(law, "force", contacts, along, law.energy)
     _check_slope(law, "stiffness", contacts, stiffness, lambda one: np.sum(law.force(one) * one.normal, axis=1))
     for velocity in (contacts.normal, -contacts.normal):
         power = np.sum(law.damping(contacts, Motion(velocity, np.ones(len(contacts)))) * velocity, axis=1)
         if np.any(power > 0.0):
             wrong = _wrong(contacts, power, power > 0.0, "powers, force times velocity, of 0 or less")
-            raise told_of(law, "damping", wrong)
+            raise part_error(law, "damping", wrong)
 
 
 def _check_slope(
@@ -77,7 +77,7 @@ def _check_slope(
     if wrong.any():
         of = "the energy" if key == "force" else "the force"
         allowed = f"{slope[wrong][0]:.6g}, minus the slope of {of}"
-        raise told_of(law, key, _wrong(contacts, found, wrong, allowed))
+        raise part_error(law, key, _wrong(contacts, found, wrong, allowed))
 
 
 def _wrong(contacts: Contacts, values: FloatArray, wrong: BoolArray, allowed: str) -> Wrong:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rigidfluid.core.geometry.guarded import Check
-from rigidfluid.core.geometry.value_types import told
+from rigidfluid.core.geometry.value_types import describe
 from rigidfluid.core.geometry.wrong import Wrong
 
 _FLOAT = np.dtype(float)
@@ -57,13 +57,13 @@ def refuse_other_shape(answer: Any, shape: tuple[int, ...], name: str = "", kind
     """Raise `Wrong` unless it is an array of a ``shape``, of numbers of these ``kinds``, as NumPy names them."""
     if not (isinstance(answer, np.ndarray) and answer.dtype.kind in kinds and answer.shape == shape):
         numbers = {"fiu": "real numbers", "iu": "whole numbers", "b": "truth values"}[kinds]
-        raise Wrong(f"{name} {told(answer)}".strip(), f"an array of {numbers} of shape {shape}")
+        raise Wrong(f"{name} {describe(answer)}".strip(), f"an array of {numbers} of shape {shape}")
 
 
 def refuse_no_number(answer: Any, name: str = "", least: float = -inf, shorter: bool = False) -> None:
     """Raise `Wrong` unless an answer, or the ``name`` of it, is a finite number above ``least``."""
     if type(answer) is not float and (np.ndim(answer) != 0 or np.asarray(answer).dtype.kind not in "fiu"):
-        raise Wrong(f"{name} {told(answer)}".strip(), "a real number")
+        raise Wrong(f"{name} {describe(answer)}".strip(), "a real number")
     if not isfinite(answer):
         raise Wrong(f"{name} {answer}".strip(), "a finite number", shorter)
     if not answer > least:
@@ -90,7 +90,7 @@ def curvature(answer: Any, *_: Any) -> None:
 def corners(answer: Any, part: Any) -> None:
     """Refuse what is no pair of a lower and an upper corner, which may be infinite."""
     if not (isinstance(answer, tuple) and len(answer) == 2):
-        raise Wrong(told(answer), "a pair of corners")
+        raise Wrong(describe(answer), "a pair of corners")
     lower, upper = answer
     for corner in answer:
         refuse_other_shape(corner, np.shape(lower))
@@ -111,7 +111,7 @@ def optional(check: Check) -> Check:
 def refuse_others(answer: Any, wanted: type, name: str = "") -> None:
     """Raise `Wrong` unless an answer, or the ``name`` of it, is of a type ``wanted``."""
     if not isinstance(answer, wanted):
-        raise Wrong(f"{name} {told(answer)}".strip(), f"an object of {wanted.__name__}")
+        raise Wrong(f"{name} {describe(answer)}".strip(), f"an object of {wanted.__name__}")
 
 
 def instance(wanted: Callable[[], type]) -> Check:
@@ -128,7 +128,7 @@ def several(wanted: Callable[[], type], least: int = 0) -> Check:
 
     def check(answer: Any, *_: Any, **__: Any) -> None:
         if not isinstance(answer, list | tuple):
-            raise Wrong(told(answer), "a list or tuple")
+            raise Wrong(describe(answer), "a list or tuple")
         if len(answer) < least:
             raise Wrong(f"{len(answer)} objects", f"at least {least}")
         for one in answer:

@@ -121,7 +121,7 @@ def _guarded(function: Callable[..., Any], key: str, check: Check) -> Callable[.
         except (RigidfluidError, MemoryError):
             raise
         except (Exception, SystemExit) as error:
-            raise told_of(part, key, error) from error
+            raise part_error(part, key, error) from error
         return answer
 
     vars(asked)["__guarded__"] = True
@@ -135,10 +135,10 @@ def _blamed(cls: type, key: str) -> Iterator[None]:
     except (RigidfluidError, MemoryError):  # say enough by themselves, or are told by the run
         raise
     except (Exception, SystemExit) as error:
-        raise told_of(cls, key, error) from error
+        raise part_error(cls, key, error) from error
 
 
-def told_of(part: Any, key: str, error: BaseException) -> RigidfluidError | KeyboardInterrupt:
+def part_error(part: Any, key: str, error: BaseException) -> RigidfluidError | KeyboardInterrupt:
     """Error of a part, or its class, that names its method or attribute ``key`` and what that has raised or given.
 
     An interrupt that came within compiled code is given as one.

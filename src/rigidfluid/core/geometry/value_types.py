@@ -1,4 +1,4 @@
-"""Values of the types that interfaces annotate."""
+"""Whether attributes have the types that interfaces annotate."""
 
 from __future__ import annotations
 
@@ -14,22 +14,27 @@ from rigidfluid.core.geometry.wrong import Wrong
 
 
 def refuse_other_types(cls: type, part: Any) -> None:
-    """Raise `Wrong` for an attribute of a ``part``, of this class or the class itself, that is missing or of another
-    type than an interface, which has a ``kind`` of its own, annotates; of a class itself those of classes alone."""
-    for name, hint, of_class in annotated(cls):
-        if of_class or part is not cls:
-            value = getattr(part, name, Ellipsis)
-            if value is Ellipsis or not _fits(value, hint):
-                found = "nothing" if value is Ellipsis else told(value)
-                raise Wrong(f"{found} as {name}", str(getattr(hint, "__name__", hint)) if isclass(hint) else str(hint))
+    """Raise `Wrong` for an attribute that is missing, or not of the type that an interface of ``cls`` annotates.
+
+    ``part`` is an object of the class, or the class itself, of which only class variables are checked.
+    """
+    for name, hint, is_class_variable in _annotated(cls):
+        if is_class_variable or part is not cls:
+            value = getattr(part, name, _MISSING)
+            if value is _MISSING or not _fits(value, hint):
+                found = "nothing" if value is _MISSING else describe(value)
+                raise Wrong(f"{found} as {name}", hint.__name__ if isclass(hint) else str(hint))
+
+
+_MISSING = object()
 
 
 @cache
-def annotated(cls: type) -> tuple[tuple[str, Any, bool], ...]:
-    """Name and type of what interfaces of a class annotate, and whether it is the class's."""
+def _annotated(cls: type) -> tuple[tuple[str, Any, bool], ...]:
+    """Attributes that the interfaces of a class annotate: name, type, and whether it is a class variable."""
     hints: dict[str, Any] = {}
     for base in reversed(cls.__mro__):
-        if "kind" in vars(base):
+        if "kind" in vars(base):  # an interface
             hints |= get_type_hints(base)
     return tuple(
         (name, get_args(hint)[0] if get_origin(hint) is ClassVar else hint, get_origin(hint) is ClassVar)
@@ -37,8 +42,8 @@ def annotated(cls: type) -> tuple[tuple[str, Any, bool], ...]:
     )
 
 
-def told(value: Any) -> str:
-    """A value in few words."""
+def describe(value: Any) -> str:
+    """Describe a value in few words: its type, and its shape or text."""
     if isinstance(value, np.ndarray):
         return f"an array of {value.dtype} of shape {value.shape}"
     text = repr(value)
@@ -52,15 +57,14 @@ def _fits(value: Any, hint: Any) -> bool:
     if hint is float:
         return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
     if origin is Literal:
-        return any(value is one or value == one for one in inner if isinstance(value, type(one)))
+        return any(isinstance(value, type(one)) and value == one for one in inner)
     if origin in (Union, UnionType):
         return any(_fits(value, one) for one in inner)
     if origin is type:
         return isclass(value) and issubclass(value, inner[0])
     if origin is tuple:
         return isinstance(value, tuple) and all(_fits(one, inner[0]) for one in value)
-    if origin is Mapping or (isclass(origin) and issubclass(origin, Mapping)):
-        return isinstance(value, Mapping) and all(
-            _fits(one, inner[0]) and _fits(to, inner[1]) for one, to in value.items()
-        )
+    if isclass(origin) and issubclass(origin, Mapping):
+        key_type, value_type = inner
+        return isinstance(value, Mapping) and all(_fits(k, key_type) and _fits(v, value_type) for k, v in value.items())
     return isinstance(value, origin or hint)

@@ -21,7 +21,7 @@ _FACETS = {2: 2.0, 3: 4.6}
 """Number of facets in a volume of h^d within h/2 of the boundary, of regular simplices."""
 
 _MOST_BOXES = 500_000
-"""Number of boxes beyond which none is halved: the size at each box's middle is then taken for all of it."""
+"""Most boxes: where halving would make more, h at each box's middle is taken for all of it."""
 
 
 class Count(NamedTuple):
@@ -32,38 +32,40 @@ class Count(NamedTuple):
 
 
 def expected_count(fluid_domain: FluidDomain, sizes: Sizes) -> Count:
-    """Expected number of cells c ∫ h^-d over the fluid, within 15 %, and of boundary facets f ∫ h^-d within h/2 of its
-    boundary, h the `made_size`.
+    """Expected number of cells, `_CELLS` ∫ h^-d over the fluid, within 15 %, and of boundary facets, `_FACETS` ∫ h^-d
+    within h/2 of the boundary; h is the `made_size`.
 
-    Boxes are halved until they are smaller than the size at their middle, and count if that is in the fluid.
+    The integrals are sums over boxes, halved until they are smaller than h at their middle. A box counts if its middle
+    is in the fluid.
     """
     domain = fluid_domain.domain
-    lower, upper = domain.extent
-    dimension = len(lower)
-    coarsest = max(sizes.size, float(np.prod(upper - lower) / _MOST_BOXES) ** (1.0 / dimension))
-    count = np.ceil((upper - lower) / coarsest)
-    edge = (upper - lower) / count
-    halves = np.array(list(product((-0.25, 0.25), repeat=dimension)))
-    steps = np.stack(np.meshgrid(*map(np.arange, count), indexing="ij"), axis=-1).reshape(-1, dimension)
-    middle, cells, facets = lower + (steps + 0.5) * edge, 0.0, 0.0
+    middle, edge = _boxes(domain, sizes.size)
+    dimension = len(edge)
+    to_halves = np.array(list(product((-0.25, 0.25), repeat=dimension)))
+    cells = facets = 0.0
     while len(middle):
         size, to_body = made_size(middle, fluid_domain, sizes)
-        split = (edge.max() > size) & (len(middle) * len(halves) <= _MOST_BOXES)
+        split = (edge.max() > size) & (len(middle) * len(to_halves) <= _MOST_BOXES)
         counted = ~split & (to_body > 0.0)
         counted[counted] = domain.contains(middle[counted])
         points, size = middle[counted], size[counted]
-        weight = np.prod(edge) / size**dimension
-        distance = np.minimum(to_body[counted], _distance_to_domain(points, domain))
-        cells += float(weight.sum())
-        facets += float(weight @ np.clip((0.5 * size - distance) / edge.max() + 0.5, 0.0, 1.0))
-        middle = (middle[split, None] + halves * edge).reshape(-1, dimension)
+        integral = np.prod(edge) / size**dimension
+        to_domain = (np.abs(piece.shape.signed_distance(points)) for piece in domain.pieces)
+        distance = np.min([to_body[counted], *to_domain], axis=0)
+        share_at_boundary = np.clip((0.5 * size - distance) / edge.max() + 0.5, 0.0, 1.0)
+        cells += float(integral.sum())
+        facets += float(integral @ share_at_boundary)
+        middle = (middle[split, None] + to_halves * edge).reshape(-1, dimension)
         edge = 0.5 * edge
     return Count(_CELLS[dimension] * cells, _FACETS[dimension] * facets)
 
 
-def _distance_to_domain(points: FloatArray, domain: Domain) -> FloatArray:
-    """Distance to the nearest piece of the domain's boundary (N,) [length]."""
-    nearest = np.full(len(points), np.inf)
-    for piece in domain.pieces:
-        np.minimum(nearest, np.abs(piece.shape.signed_distance(points)), out=nearest)
-    return nearest
+def _boxes(domain: Domain, size: float) -> tuple[FloatArray, FloatArray]:
+    """Middles (b, d) and edges (d,) of equal boxes, of about this size, that fill the domain's extent [length]."""
+    lower, upper = domain.extent
+    dimension = len(lower)
+    longest = max(size, float(np.prod(upper - lower) / _MOST_BOXES) ** (1.0 / dimension))
+    count = np.ceil((upper - lower) / longest)
+    edge = (upper - lower) / count
+    numbers = np.stack(np.meshgrid(*map(np.arange, count), indexing="ij"), axis=-1).reshape(-1, dimension)
+    return lower + (numbers + 0.5) * edge, edge

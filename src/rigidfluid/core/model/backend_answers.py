@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rigidfluid.core.geometry.answers import refuse_no_number, refuse_other_rows, refuse_other_shape, refuse_others
-from rigidfluid.core.geometry.value_types import told
+from rigidfluid.core.geometry.value_types import describe
 from rigidfluid.core.geometry.wrong import Wrong
 from rigidfluid.core.model.types import Advance, Fields, Response, Step, Twist
 
@@ -22,7 +22,7 @@ def state(answer: Any, *_: Any, **__: Any) -> None:
     for name, values in answer.items():
         refuse_others(name, str, "name")
         if not (isinstance(values, np.ndarray) and values.dtype.kind in "fiub"):
-            raise Wrong(f"{name} {told(values)}", "arrays of numbers")
+            raise Wrong(f"{name} {describe(values)}", "arrays of numbers")
 
 
 def state_and_energy(answer: Any, *_: Any, **__: Any) -> None:
@@ -81,7 +81,7 @@ def probes(answer: Any, part: Any, fluid: Any, mesh: Any, points: Any) -> None:
 
 def _refuse_other_length(answer: Any, length: int) -> None:
     if not (isinstance(answer, tuple) and len(answer) == length):
-        raise Wrong(told(answer), f"a tuple of {length}")
+        raise Wrong(describe(answer), f"a tuple of {length}")
 
 
 def _refuse_other_twist(twist: Any, step: Step) -> None:
