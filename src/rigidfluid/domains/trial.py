@@ -44,9 +44,15 @@ def _outcome(kind: Kind, path: Path, dimension: int, size: int, _changed: int) -
     """End of a trial in words, empty where it was a good one."""
     most = _MEMORY + _PER_BYTE * size
     command = python("-m", "rigidfluid.domains.trial", kind, str(path), str(dimension), str(most))
-    silent = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     try:
-        ended = subprocess.run(command, timeout=SECONDS, check=False, env=environment(), **silent)
+        ended = subprocess.run(
+            command,
+            timeout=SECONDS,
+            check=False,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            env=environment(),
+        )
     except subprocess.TimeoutExpired:
         return f"took more than {SECONDS:g} seconds"
     if ended.returncode < 0:
