@@ -23,7 +23,7 @@ Kind = Literal["cad", "mesh"]
 SECONDS = 120.0
 """Time in which a file has to be read [s]."""
 
-_MEMORY, _PER_BYTE = 1 << 33, 500
+_MEMORY, _PER_BYTE = 1 << 31, 500
 """Memory that a trial may take [byte], and for each byte of the file."""
 
 _TOO_LITTLE = 3

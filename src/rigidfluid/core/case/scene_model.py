@@ -24,6 +24,7 @@ from rigidfluid.core.scene.scene import AUTO, BodyTable, BoundaryTable, ContactT
 from rigidfluid.core.setup.contact_laws import ContactLaw
 from rigidfluid.core.setup.model import ContactStepping, Model
 from rigidfluid.core.setup.rigid_body import RigidBody
+from rigidfluid.errors import ArgumentError
 from rigidfluid.registry import BODY, DETECTOR, DOMAIN, Registry
 
 Case = Scene | Model
@@ -36,7 +37,7 @@ def model_of(case: Case) -> Model:
 
     Raises PluginError if a part is missing, SceneError for what is unknown, missing or not allowed.
     """
-    raise TypeError(f"a scene or a model is needed, not {type(case).__name__}")
+    raise ArgumentError("case", repr(case), "a Scene or a Model", "Read a file with load_scene first.")
 
 
 @model_of.register

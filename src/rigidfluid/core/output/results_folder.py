@@ -99,8 +99,8 @@ def _refuse_foreign(out: Path, product: Product) -> None:
     if foreign is not None:
         raise OutputError(
             str(foreign),
-            f"a file of this name in a folder that is not a {product.kind}'s, as it has no {product.mark}",
-            f"a new or empty folder, or one that a {product.kind} has written",
+            f"a file of this name in a folder that is of no {product.kind}, as it has no {product.mark}",
+            f"a new or empty folder, or one that an earlier {product.kind} has written",
             "Choose another --out, or move the files away.",
         )
 

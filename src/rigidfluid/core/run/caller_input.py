@@ -1,14 +1,15 @@
-"""Numbers that a caller gives a body while a run goes on."""
+"""What a caller gives a run: a folder, times, and numbers for a body."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from pathlib import Path
 
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.errors import SceneError
+from rigidfluid.errors import ArgumentError, SceneError
 
 
 def twist_row(dimension: int, velocity: Sequence[float] | None, angular_velocity: Sequence[float] | None) -> FloatArray:
@@ -35,14 +36,31 @@ def over_time(over: float | None, before: FloatArray, after: FloatArray) -> floa
     return float(over)
 
 
-def time_of(key: str, value: float, least: float = -math.inf) -> float:
-    """A time above ``least``, infinite ones among them; raises SceneError."""
+def time_of(key: str, value: float) -> float:
+    """A time, infinite ones among them; raises SceneError."""
+    return _time(key, value, lambda number: not math.isnan(number), "a number")
+
+
+def interval_of(key: str, value: float) -> float:
+    """A finite time above 0; raises SceneError."""
+    return _time(key, value, lambda number: 0.0 < number < math.inf, "a finite time above 0")
+
+
+def folder_of(out: Path | None) -> Path | None:
+    """Folder for the results, None for none; raises ArgumentError."""
+    if out is None:
+        return None
+    if not isinstance(out, str | Path) or not str(out):
+        raise ArgumentError("out", repr(out), "a path, or None", "Give '.' for the working folder.")
+    return Path(out)
+
+
+def _time(key: str, value: float, allows: Callable[[float], bool], allowed: str) -> float:
     try:
         number = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         number = math.nan
-    if not number > least:
-        allowed = "a number" if least == -math.inf else f"a time above {least:g}"
+    if not allows(number):
         raise SceneError(key, value, allowed, "Give a time in the scene's unit.")
     return number
 

@@ -27,7 +27,7 @@ from rigidfluid.core.output.point_sets import PointSet, body_points, contact_poi
 from rigidfluid.core.output.records import StepCost, count_cells, joint_coordinates, records
 from rigidfluid.core.output.vtu import BODIES, CONTACTS
 from rigidfluid.core.output.writer import Writer, has_checkpoint
-from rigidfluid.core.run.caller_input import over_time, time_of, twist_row, wrench_row
+from rigidfluid.core.run.caller_input import folder_of, interval_of, over_time, time_of, twist_row, wrench_row
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.initial_state import initial_state
 from rigidfluid.core.run.mesh_keys import updater_of
@@ -106,7 +106,7 @@ class Simulation(Described):
         processes: int | None = None,
     ) -> None:
         self.model = model = model_of(case)
-        out = None if out is None else Path(out)
+        out = folder_of(out)
         system = assemble(model)
         self._ranks = system.backend.ranks
         _refuse_lone_ranks(system.backend, processes)
@@ -230,9 +230,11 @@ class Simulation(Described):
 
     def observe(self, observer: Observer, every: float | None = None) -> None:
         """Call ``observer`` with this simulation after each accepted step, or after those that reach a multiple of
-        ``every`` [time]; raises SceneError where that is no time above 0."""
+        ``every`` [time]; raises SceneError where that is no time above 0, or the observer no function."""
+        if not callable(observer):
+            raise SceneError("observer", repr(observer), "a function of the simulation", "Give one that can be called.")
         if every is not None:
-            every = time_of("every", every, least=0.0)
+            every = interval_of("every", every)
         self._observers.append((Schedule(self.clock, every, self.time), observer))
 
     def prescribe(
@@ -311,7 +313,9 @@ class Simulation(Described):
 
     def restore(self, saved: SavedRun) -> None:
         """Go back to where the run was saved; raises OutputError where its results go to a folder, SceneError where
-        another model's run was saved."""
+        another model's run was saved, or this is no saved run."""
+        if not isinstance(saved, SavedRun):
+            raise SceneError("restore", repr(saved), "what save() gave", "Keep that, and restore it.")
         if saved.model is not self.model and saved.model.document != self.model.document:
             found, allowed = f"a run of {saved.model.name!r} or of other values", "one of the same scene or model"
             raise SceneError("restore", found, allowed, "Restore it in a Simulation of its own scene.")

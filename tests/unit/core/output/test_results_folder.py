@@ -62,7 +62,7 @@ def test_a_file_that_would_be_replaced_in_a_folder_of_no_run(tmp_path: Path, nam
     (tmp_path / name).parent.mkdir(exist_ok=True)
     (tmp_path / name).write_text("years of work")
     before = contents(tmp_path)
-    with pytest.raises(OutputError, match=rf"{name}: found a file of this name in a folder that is not a run's"):
+    with pytest.raises(OutputError, match=rf"{name}: found a file of this name in a folder that is of no run"):
         rigidfluid.run(SCENE, tmp_path)
     assert contents(tmp_path) == before
 
@@ -158,7 +158,7 @@ def test_a_run_whose_folder_vanishes_says_so_and_gives_no_results_that_are_not_s
 def refuse_a_file(folder: Path, name: str, write: Callable[[Path], object]) -> None:
     """A command leaves a file of somebody else as it is, and names it before it does anything."""
     (folder / name).write_text("years of work")
-    with pytest.raises(OutputError, match=rf"{name}: found a file of this name in a folder that is not a"):
+    with pytest.raises(OutputError, match=rf"{name}: found a file of this name in a folder that is of no "):
         write(folder)
     assert contents(folder) == {folder / name: b"years of work"}
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rigidfluid.api import OutputError, SceneError, Simulation, StepError, run, scene_from_dict
+from rigidfluid.api import ArgumentError, OutputError, SceneError, Simulation, StepError, run, scene_from_dict
 
 BALL = {"name": "ball", "type": "sphere", "radius": 0.1, "density": 2.0, "position": [0.3, 0.5]}
 PADDLE = {"name": "paddle", "type": "sphere", "radius": 0.1, "density": 1.0, "position": [0.7, 0.5]}
@@ -181,14 +181,14 @@ def test_another_scene_s_save_is_refused() -> None:
     simulation.restore(Simulation(scene(BALL, wet=False)).save())
 
 
-@pytest.mark.parametrize("every", [0, -1.0, float("nan"), "x", [1.0]])
+@pytest.mark.parametrize("every", [0, -1.0, float("nan"), float("inf"), 10**400, "x", [1.0]])
 def test_observers_are_called_after_a_time_above_zero(every: Any) -> None:
     simulation = Simulation(scene(BALL, wet=False))
-    with pytest.raises(SceneError, match=r"every: found .*; allowed is a time above 0"):
+    with pytest.raises(SceneError, match=r"every: found .*; allowed is a finite time above 0"):
         simulation.observe(lambda _: None, every)
 
 
-@pytest.mark.parametrize("until", [float("nan"), "x", None])
+@pytest.mark.parametrize("until", [float("nan"), "x", 10**400, None])
 def test_a_run_goes_until_a_time_alone(until: Any) -> None:
     with pytest.raises(SceneError, match=r"until: found .*; allowed is a number"):
         Simulation(scene(BALL, wet=False)).go(until)
@@ -200,3 +200,27 @@ def test_a_controller_gives_levels_alone(level: Any) -> None:
     simulation.stepper.propose = lambda _: level
     with pytest.raises(StepError, match=r"stepper.propose: found .*; allowed is a whole number from 0"):
         simulation.step()
+
+
+@pytest.mark.parametrize("observer", [None, 3])
+def test_observers_are_functions(observer: Any) -> None:
+    with pytest.raises(SceneError, match=r"observer: found .*; allowed is a function"):
+        Simulation(scene(BALL, wet=False)).observe(observer)
+
+
+@pytest.mark.parametrize("saved", [None, 4, "x"])
+def test_what_was_not_saved_is_not_restored(saved: Any) -> None:
+    with pytest.raises(SceneError, match=r"restore: found .*; allowed is what save\(\) gave"):
+        Simulation(scene(BALL, wet=False)).restore(saved)
+
+
+@pytest.mark.parametrize("case", [None, 3, "scene.toml", Path("scene.toml")])
+def test_other_than_scenes_and_models_are_not_run(case: Any) -> None:
+    with pytest.raises(ArgumentError, match=r"case: found .*; allowed is a Scene or a Model"):
+        run(case)
+
+
+@pytest.mark.parametrize("out", ["", 5, b"x"])
+def test_a_folder_is_a_path(out: Any) -> None:
+    with pytest.raises(ArgumentError, match=r"out: found .*; allowed is a path, or None"):
+        Simulation(scene(BALL, wet=False), out)
