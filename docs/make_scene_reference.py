@@ -12,16 +12,16 @@ from rigidfluid.core.scene.scene import Scene
 from rigidfluid.registry import Entry, Registry
 
 PATH = Path(__file__).with_name("scene.md")
-HEAD = """# What a scene may say
+HEAD = """# What a scene may contain
 
-Made from the models by `python docs/make_scene_reference.py`; a test fails where it is out of date.
+This page is made from the models by `python docs/make_scene_reference.py`; a test fails if it is out of date.
 
-Units are free but must be consistent: all in cm, g and s, or all in m, kg and s. `d` is the dimension; in 2D all is per
-unit depth, so that a density is in mass/length². Keys that nothing reads are refused. On the command line,
+Units are free but must be consistent, for example all in cm, g and s, or all in m, kg and s. `d` is the dimension. In 2D
+all quantities are per unit depth, so a density is in mass/length². Keys that nothing reads are refused. On the command line,
 `--set table.key=value` overrides a key; entries of lists are counted from 0, as in `body.0.density`.
 
-Editors with taplo, as VS Code with Even Better TOML, complete and check keys and names of parts after
-`rigidfluid schema > scene.schema.json`, and with `#:schema scene.schema.json` in the first line of a scene.
+Editors that use taplo, such as VS Code with Even Better TOML, complete and check keys and names of parts. For this, run
+`rigidfluid schema > scene.schema.json`, and make `#:schema scene.schema.json` the first line of the scene.
 """
 Schema = dict[str, Any]
 

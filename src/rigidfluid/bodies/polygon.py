@@ -27,8 +27,8 @@ class PolygonOptions(PartOptions):
 
     points: list[Point] = Field(
         min_length=3,
-        description="Corners [x, y] in order, either way round, in any frame: the body's `position` is where its "
-        "centre of mass is put, and `angle` turns it about that [length]",
+        description="Corners [x, y] in order, clockwise or counter-clockwise, in any frame: the centre of mass is "
+        "placed at `position`, and `angle` rotates the body about it [length]",
     )
 
 

@@ -24,10 +24,10 @@ class PolyhedronOptions(PartOptions):
     """Keys of a ``[[body]]`` table of type ``stl``: ``file`` with its triangles, and ``scale``."""
 
     file: str = Field(
-        description="STL file, text or binary, sought in the scene's folder; a closed surface in one piece, in any "
-        "frame: the body's `position` is where its centre of mass is put, and `orientation` turns it about that"
+        description="STL file, text or binary, searched for in the scene's folder; a closed surface in one piece, in "
+        "any frame: the centre of mass is placed at `position`, and `orientation` rotates the body about it"
     )
-    scale: float = Field(default=1.0, gt=0, description="What lengths in the file are multiplied by [1]")
+    scale: float = Field(default=1.0, gt=0, description="Factor by which lengths in the file are multiplied [1]")
 
 
 class Polyhedron(FacetBody):

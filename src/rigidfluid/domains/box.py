@@ -25,7 +25,8 @@ class BoxOptions(PartOptions):
     """Keys of the ``[domain]`` table with type ``box``: ``lower`` and ``upper``, its corners [length].
 
     Its surfaces are ``left`` and ``right`` along x, ``bottom`` and ``top`` along y, ``back`` and ``front`` along z;
-    ``xmin`` and ``xmax``, ``ymin`` and ``ymax``, ``zmin`` and ``zmax`` in a ``[[boundary]]`` table are the same ones.
+    ``xmin`` and ``xmax``, ``ymin`` and ``ymax``, ``zmin`` and ``zmax`` in a ``[[boundary]]`` table are other names of
+    these.
     """
 
     lower: tuple[float, ...] = Field(description="Corner of the box with the smallest coordinates [length]")

@@ -43,18 +43,18 @@ _SUFFIXES = (".step", ".stp", ".brep", ".iges", ".igs")
 
 
 class CadOptions(PartOptions):
-    """Keys of the ``[domain]`` table with type ``cad``: a STEP, BREP or IGES file with one solid, or in 2D one
-    face, which is where the fluid is.
+    """Keys of the ``[domain]`` table with type ``cad``: a STEP, BREP or IGES file with one solid, or in 2D one face,
+    which the fluid fills.
 
-    Planes, cylinders, balls and tori (in 2D lines and circles) are exact; other faces are as fine facets see them.
+    Planes, cylinders, balls and tori (in 2D lines and circles) are exact; fine facets represent other faces.
     """
 
-    file: str = Field(description="The file, sought in the scene's folder: .step, .stp, .brep, .iges or .igs")
-    scale: float = Field(default=1.0, gt=0, description="What lengths in the file are multiplied by [1]")
+    file: str = Field(description="The file, searched for in the scene's folder: .step, .stp, .brep, .iges or .igs")
+    scale: float = Field(default=1.0, gt=0, description="Factor by which lengths in the file are multiplied [1]")
     faces: dict[str, Labels] | None = Field(
         default=None,
-        description="Names of surfaces, each with the names in the file, or the numbers from 1 on, of the faces (in 2D "
-        "edges) that it consists of; all must be there; the file's names if not given",
+        description="Names of surfaces, each with the faces (in 2D edges) that it consists of, by their names in the "
+        "file or by numbers from 1; each face must be listed; the file's names if not given",
     )
 
 

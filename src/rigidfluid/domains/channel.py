@@ -18,7 +18,7 @@ from rigidfluid.domains.obstacles import Obstacles
 
 class ChannelOptions(BoxOptions):
     """Keys of the ``[domain]`` table with type ``channel``: the box from ``lower`` to ``upper``, and in each table
-    ``[[domain.obstacle]]`` a body of any type that stays where it is, with a surface of its own.
+    ``[[domain.obstacle]]`` a fixed body of any type, with a surface of its own.
 
     The faces of the box are called ``left`` and ``right`` along x, ``bottom`` and ``top`` along y, ``back`` and
     ``front`` along z, or, in a ``[[boundary]]`` table, ``xmin``, ``xmax``, ``ymin``, ``ymax``, ``zmin`` and ``zmax``.

@@ -27,23 +27,23 @@ _LEAST_VOLUME = 1e-12
 
 class MeshOptions(PartOptions):
     """Keys of the ``[domain]`` table with type ``mesh``: a file whose boundary facets are the walls. Its own cells are
-    not used. Walls without thickness, facets with fluid on both sides, are refused.
+    not used. Walls without thickness, which have fluid on both sides, are refused.
 
-    Files of Gmsh, MED, VTU and Medit are read by meshio, which comes with `rigidfluid[files]`, those of Netgen and STL
-    without.
+    Files of Gmsh, MED, VTU and Medit need meshio, which comes with `rigidfluid[files]`; those of Netgen and STL do not.
     """
 
     file: str = Field(
-        description="The file, sought in the scene's folder: .msh, .med, .vtu, .mesh, .meshb, .vol, .vol.gz or .stl"
+        description="The file, searched for in the scene's folder: .msh, .med, .vtu, .mesh, .meshb, .vol, .vol.gz or "
+        ".stl"
     )
-    scale: float = Field(default=1.0, gt=0, description="What lengths in the file are multiplied by [1]")
+    scale: float = Field(default=1.0, gt=0, description="Factor by which lengths in the file are multiplied [1]")
     faces: dict[str, Labels] | None = Field(
         default=None,
-        description="Names of surfaces, each with the names or numbers in the file that it consists of; all must be "
-        "there; the file's names if not given",
+        description="Names of surfaces, each with the names or numbers in the file that it consists of; each must be "
+        "listed; the file's names if not given",
     )
     fluid: int | str | None = Field(
-        default=None, description="Number or name of the cells that are fluid, where the file has several kinds"
+        default=None, description="Number or name of the cells that are fluid, if the file has several kinds"
     )
 
 

@@ -20,11 +20,12 @@ from rigidfluid.errors import SceneError
 
 
 class StenosisOptions(PartOptions):
-    """Keys of the ``[domain]`` table with type ``stenosis``: a channel along x, the middle of its throat at the origin.
+    """Keys of the ``[domain]`` table with type ``stenosis``: a channel along x with the middle of its throat at the
+    origin.
 
-    Its surfaces are ``left`` and ``right``, the walls ``bottom`` and ``top``, and on them ``bottom_bump`` and
-    ``top_bump``: what stands out of the wall of a disk with the given radius. Without ``throat`` the bumps are half
-    disks, of centres on the walls; a wider throat makes them flatter, a narrower one rounder.
+    Its surfaces are ``left`` and ``right``, the walls ``bottom`` and ``top``, and on these ``bottom_bump`` and
+    ``top_bump``, each the part of a disk of the given radius that protrudes from the wall. Without ``throat`` the bumps
+    are half disks with centres on the walls; a wider throat makes them flatter, a narrower one rounder.
     """
 
     length: float = Field(gt=0, description="Length of the channel, along x [length]")

@@ -16,20 +16,22 @@ class SpringDashpotOptions(PartOptions):
     """Keys of a table with law ``spring-dashpot``.
 
     ``stiffness``: of the spring, k [force/length]. ``restitution`` e or ``damping`` γ [force·time/length], not both,
-    say what the dashpot takes out; without either it takes nothing. ``friction``: the coefficient μ.
-    ``tangential_damping``: the dashpot along the surfaces over the one across, x.
+    set the dissipation of the dashpot; without either there is none. ``friction``: the coefficient μ.
+    ``tangential_damping``: the ratio x of the dashpots along and across the surfaces.
     """
 
     stiffness: float = Field(gt=0, description="Stiffness k of the spring [force/length]")
     restitution: float | None = Field(
-        default=None, gt=0, le=1, description="Speed after over speed before a dry head-on impact [1]"
+        default=None, gt=0, le=1, description="Ratio of the speeds after and before a dry head-on impact [1]"
     )
     damping: float | None = Field(
-        default=None, ge=0, description="Coefficient γ of the dashpot, in place of restitution [force·time/length]"
+        default=None, ge=0, description="Coefficient γ of the dashpot, instead of restitution [force·time/length]"
     )
-    friction: float = Field(default=0.0, ge=0, description="Largest force along over force across the surfaces, μ [1]")
+    friction: float = Field(
+        default=0.0, ge=0, description="Coefficient of friction μ: the largest ratio of tangential to normal force [1]"
+    )
     tangential_damping: float = Field(
-        default=1.0, ge=0, description="Coefficient of the dashpot along the surfaces over γ, x [1]"
+        default=1.0, ge=0, description="Ratio x of the dashpot's coefficient along the surfaces to γ [1]"
     )
 
     @model_validator(mode="after")

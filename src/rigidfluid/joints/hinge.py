@@ -25,8 +25,8 @@ class HingeOptions(CoordinateOptions):
     stiffness: Positive | None = Field(default=None, description="Of a spring; none if not given [force·length/rad]")
     rest_angle: float | None = Field(
         default=None,
-        description="Angle at which the spring rests, of the first body seen from the second, counter-clockwise about "
-        "the axis; 0, that at the start, if not given [rad]",
+        description="Rest angle of the spring: that of the first body relative to the second, counter-clockwise about "
+        "the axis; 0, the angle at the start, if not given [rad]",
     )
     damping: Positive | None = Field(default=None, description="Of a damper; none if not given [force·length·time/rad]")
     drive: StrokeTable | None = Field(

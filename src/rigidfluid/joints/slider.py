@@ -17,17 +17,18 @@ from rigidfluid.joints.one_coordinate import CoordinateOptions, OneCoordinate, u
 
 
 class SliderOptions(CoordinateOptions):
-    """Keys of a ``[[joint]]`` table with type ``slider``: the first body moves along an axis of the second, and turns
-    as that does."""
+    """Keys of a ``[[joint]]`` table with type ``slider``: the first body moves along an axis of the second, without
+    relative rotation."""
 
     axis: Vector | None = Field(
-        default=None, description="Direction of the axis at the start, needed; it turns with the second body [1]"
+        default=None,
+        description="Direction of the axis at the start, which a slider needs; it turns with the second body [1]",
     )
     stiffness: Positive | None = Field(default=None, description="Of a spring; none if not given [force/length]")
     rest_length: float | None = Field(
         default=None,
-        description="Displacement at which the spring rests, of the first body seen from the second, along the axis; "
-        "0, that at the start, if not given [length]",
+        description="Rest length of the spring: the displacement of the first body relative to the second along the "
+        "axis; 0, that at the start, if not given [length]",
     )
     damping: Positive | None = Field(default=None, description="Of a damper; none if not given [force·time/length]")
     drive: StrokeTable | None = Field(

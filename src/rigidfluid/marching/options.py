@@ -18,4 +18,4 @@ class MarchingOptions(PartOptions):
     multiple: bool = Field(
         default=False, description="Whether a pair that is near at separate places has a contact at each of them"
     )
-    threads: int = Field(default=0, ge=0, description="Threads that march side by side; 0 for one per core [1]")
+    threads: int = Field(default=0, ge=0, description="Threads that march in parallel; 0 for one per core [1]")

@@ -46,7 +46,7 @@ class ArticulatedOptions(PartOptions):
     """Keys of a ``[[mechanism]]`` table with type ``articulated``: its components, and the strokes that move them; it
     is rigid without strokes."""
 
-    component: tuple[ComponentTable, ...] = Field(description="`name`, and what a body has")
+    component: tuple[ComponentTable, ...] = Field(description="`name`, and the keys of a body")
     stroke: tuple[RelativeStrokeTable, ...] = Field(
         default=(), description="A later one is carried along by earlier ones that move the same components"
     )

@@ -13,7 +13,7 @@ from rigidfluid.errors import SceneError
 
 
 class ComponentTable(NestedBodyTable):
-    """A rigid body of a mechanism, in the mechanism's frame where all strokes are at value zero."""
+    """A rigid body of a mechanism, placed in the mechanism's frame with all strokes at value zero."""
 
     density: Positive = Field(description="Density [mass/length^d]")
 

@@ -28,10 +28,11 @@ class ThreeSphereSwimmerOptions(PartOptions):
     radius: Positive = Field(description="Radius of the balls [length]")
     density: Positive = Field(description="Density of the balls [mass/length^d]")
     arms: Positive | tuple[Positive, Positive] = Field(
-        description="Distance of the centres of neighbours with the arms out; a number, or one for each arm [length]"
+        description="Distance between the centres of neighbours with the arms extended; a number, or one for each arm "
+        "[length]"
     )
-    amplitude: Positive = Field(description="By how much an arm shortens [length]")
-    speed: Positive = Field(description="At which an arm shortens and lengthens [length/time]")
+    amplitude: Positive = Field(description="Length by which an arm shortens [length]")
+    speed: Positive = Field(description="Rate at which an arm shortens and lengthens [length/time]")
     order: Annotated[tuple[Phase, ...], Field(min_length=4, max_length=4)] = Field(
         default=_FORWARD, description="The four phases of a cycle; reversed, it swims back"
     )

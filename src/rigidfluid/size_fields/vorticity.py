@@ -16,12 +16,12 @@ from rigidfluid.core.scene.scene import Positive
 
 
 class VorticityOptions(PartOptions):
-    """Keys of a ``[[mesh.field]]`` table with type ``vorticity``: edges so short that the velocity changes little along
-    one, in each mesh but the first."""
+    """Keys of a ``[[mesh.field]]`` table with type ``vorticity``: edges so short that the velocity changes little
+    along one, in each mesh except the first."""
 
     size: Positive = Field(description="Shortest edge that it asks for [length]")
     threshold: Positive = Field(
-        default=0.1, description="Greatest vorticity times edge length, over the greatest speed in the fluid [1]"
+        default=0.1, description="Largest vorticity times edge length, divided by the largest speed in the fluid [1]"
     )
 
 

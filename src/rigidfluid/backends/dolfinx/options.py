@@ -37,6 +37,6 @@ class DolfinxOptions(TaylorHoodOptions):
     )
     petsc: Annotated[dict[str, _Value], AfterValidator(_only_numerics)] = Field(
         default_factory=dict,
-        description='PETSc options of the solver, without a leading dash, as `pc_factor_mat_solver_type = "umfpack"`; '
-        "none that names files or Python",
+        description="PETSc options of the solver, without a leading dash, such as "
+        '`pc_factor_mat_solver_type = "umfpack"`; options that name files or Python are refused',
     )

@@ -37,11 +37,9 @@ class RepulsionOptions(PartOptions):
     """
 
     epsilon: Epsilon = Field(
-        description="Stiffness parameter ε, smaller is stiffer; `auto`: from the loads [length^p/force]"
+        description="Stiffness parameter ε; smaller is stiffer; `auto`: from the loads [length^p/force]"
     )
-    epsilon_wall: Epsilon | None = Field(
-        default=None, description="The same against walls; epsilon if not given [length^p/force]"
-    )
+    epsilon_wall: Epsilon | None = Field(default=None, description="ε at walls; epsilon if not given [length^p/force]")
 
 
 class Repulsion(ForceLaw):

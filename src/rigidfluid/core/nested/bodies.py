@@ -17,7 +17,7 @@ from rigidfluid.registry import BODY, Registry
 
 
 class NestedBodyTable(PartOptions):
-    """A shape in its place; besides these keys it has those of its type."""
+    """A shape at a position; it also has the keys of its type."""
 
     model_config = ConfigDict(extra="allow")
 

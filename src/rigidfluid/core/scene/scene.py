@@ -82,9 +82,9 @@ UnitName = Annotated[str, Field(pattern="^[A-Za-zµμ]+$")]
 class UnitsTable(_Table):
     """Names of the units that the scene's numbers are in, for labels alone: no number depends on them."""
 
-    length: UnitName = Field(description="Name of the unit of length, as `cm`")
-    time: UnitName = Field(description="Name of the unit of time, as `s`")
-    mass: UnitName = Field(description="Name of the unit of mass, as `g`")
+    length: UnitName = Field(description="Name of the unit of length, such as `cm`")
+    time: UnitName = Field(description="Name of the unit of time, such as `s`")
+    mass: UnitName = Field(description="Name of the unit of mass, such as `g`")
 
 
 class SceneTable(_Table):
@@ -117,23 +117,23 @@ class FluidTable(_OpenTable):
     )
     initial: Literal["rest", "steady"] | Formulas = Field(
         default="rest",
-        description="Flow at the start: at `rest` but for what bodies set in motion, `steady` past bodies that keep "
-        "their velocities, or expressions of its velocity [length/time]",
+        description="Flow at the start: `rest`, except for what moving bodies set in motion, `steady` past bodies that "
+        "keep their velocities, or expressions of its velocity [length/time]",
     )
 
 
 class WindowTable(_Table):
-    """The part of a long domain that is meshed, which goes with a body.
+    """The meshed part of a long domain, which moves with a body.
 
-    Its end behind is open; the fluid ahead is as the domain's end there says: at rest at a wall.
+    Its rear end is open. At its front end the condition of the domain's end there holds: at rest for a wall.
     """
 
     follow: str = Field(description="Name of the body")
     direction: Literal["x", "y", "z", "-x", "-y", "-z"] = Field(
-        description="Where the body goes; the window never goes back"
+        description="Direction in which the body moves; the window never moves back"
     )
-    ahead: Positive = Field(description="How far it reaches ahead of the body's centre at the start [length]")
-    behind: Positive = Field(description="How far it reaches behind the body's centre at the start [length]")
+    ahead: Positive = Field(description="Distance from the body's centre to its front end at the start [length]")
+    behind: Positive = Field(description="Distance from the body's centre to its rear end at the start [length]")
 
 
 class DomainTable(_OpenTable):
@@ -162,8 +162,8 @@ class StrokeTable(_Table):
     )
     period: Positive | None = Field(
         default=None,
-        description="Time after which it repeats; the value rests after the last row; time of the last row if not "
-        "given [time]",
+        description="Time after which it repeats; the value is constant after the last row; time of the last row if "
+        "not given [time]",
     )
     repeat: bool = Field(default=True, description="Whether it repeats; else the last value is held")
 
@@ -189,7 +189,7 @@ class VaryingTable(_BoundaryTable):
 
 
 class WallTable(_BoundaryTable):
-    """No slip; it repels bodies, as no other type does. It may move along itself."""
+    """No slip; the only type that repels bodies. A wall may move along itself."""
 
     type: Literal["wall"] = Field(description="The condition")
     velocity: Vector | None = Field(
@@ -197,15 +197,15 @@ class WallTable(_BoundaryTable):
         description="Velocity of a wall along itself, in numbers; expressions need type = 'velocity' [length/time]",
     )
     angular_velocity: Angular | None = Field(
-        default=None, description="Angular velocity of a wall that turns in itself; a number in 2D [rad/time]"
+        default=None, description="Angular velocity of a wall that rotates along itself; a number in 2D [rad/time]"
     )
     centre: Vector | None = Field(
-        default=None, description="Point that such a wall turns about; the origin if not given [length]"
+        default=None, description="Point that such a wall rotates about; the origin if not given [length]"
     )
 
 
 class VelocityTable(VaryingTable):
-    """A velocity that is given, by itself or by its `flux`.
+    """A prescribed velocity, given directly or by its `flux`.
 
     Values may be expressions of x, y, z and t in quotes, with `pi`, `+ - * / **`, comparisons, and the functions `sin`,
     `cos`, `tan`, `tanh`, `exp`, `log`, `sqrt`, `abs`, `min`, `max` and `where(condition, then, otherwise)`.
@@ -215,26 +215,26 @@ class VelocityTable(VaryingTable):
     velocity: Formulas | None = Field(default=None, description="Velocity, at the peak of the `profile` [length/time]")
     flux: Formula | None = Field(
         default=None,
-        description="Instead of `velocity`, what flows in through the surface, out if negative: a number or an "
-        "expression of t alone [length^d/time]",
+        description="Instead of `velocity`, the inflow through the surface, negative for outflow: a number or an "
+        "expression of t only [length^d/time]",
     )
     profile: Literal["uniform", "parabolic", "poiseuille", "couette"] = Field(
         default="uniform",
-        description="How the velocity is spread over the surface; `parabolic` is zero on its edges; `poiseuille` is "
+        description="Distribution of the velocity over the surface; `parabolic` is zero on its edges; `poiseuille` is "
         "the developed flow through a segment, rectangle or disk; `couette` rises from one end of a segment to the "
         "other",
     )
 
 
 class PressureTable(VaryingTable):
-    """An open end with a pressure that is given, a number or an expression; fluid passes it straight."""
+    """An open end with a prescribed pressure, a number or an expression; fluid passes it at right angles."""
 
     type: Literal["pressure"] = Field(description="The condition")
     pressure: Formula = Field(description="Pressure on the surface [force/length^(d-1)]")
 
 
 class SlipTable(_BoundaryTable):
-    """No fluid passes, and it goes along the surface without traction."""
+    """No fluid passes; it flows along the surface without traction."""
 
     type: Annotated[Literal["slip", "symmetry"], AfterValidator(lambda value: "slip")] = Field(
         description="The condition; `symmetry` is another name of it"
@@ -265,8 +265,8 @@ class PrescribedTable(_Table):
 
 
 class SpringTable(_Table):
-    """Springs and dampers between a body and the ground, along the axes: force = -stiffness · displacement -
-    damping · velocity, and so for rotations."""
+    """Springs and dampers between a body and the ground, along the axes: force = -stiffness · displacement - damping
+    · velocity, and likewise for rotations."""
 
     stiffness: NotNegative | None = Field(
         default=None, description="Along x, y (and z); zero if not given [force/length]"
@@ -282,8 +282,8 @@ class SpringTable(_Table):
     )
     rest: Vector | None = Field(
         default=None,
-        description="Position of the centre of mass at which springs pull nowhere; that at the start if not given; "
-        "rotations rest where they start [length]",
+        description="Position of the centre of mass at which springs exert no force; that at the start if not given; "
+        "rotational springs rest at the initial orientation [length]",
     )
 
 
@@ -309,14 +309,14 @@ class BodyTable(_OpenTable):
     prescribed: PrescribedTable | None = Field(default=None, description="A motion that the fluid cannot change")
     free: tuple[Freedom, ...] | None = Field(
         default=None,
-        description="Directions in which it may move, the others are held: of `x`, `y`, `z`, in 2D `rotation`, in 3D "
+        description="Directions in which it may move; the others are held. Of `x`, `y`, `z`, in 2D `rotation`, in 3D "
         "rotations `rx`, `ry`, `rz` about the axes; all if not given",
     )
     spring: SpringTable | None = Field(default=None, description="Springs and dampers between it and the ground")
 
 
 class MechanismTable(_OpenTable):
-    """Several bodies that move as one; the keys of its type say which."""
+    """Several bodies that move as one; the keys of its type define them."""
 
     name: str = Field(
         default="",
@@ -337,16 +337,14 @@ class JointTable(_OpenTable):
     name: str = Field(
         default="", pattern=PRINTABLE, description="Name in the results; `joint0`, `joint1`, … if not given"
     )
-    type: str = Field(
-        description="Name of a joint type; `rod` has no keys of its own: the bodies move as if they were one"
-    )
+    type: str = Field(description="Name of a joint type; `rod` has no keys of its own: the bodies move as one")
     between: Annotated[tuple[str, ...], Field(min_length=1, max_length=2)] = Field(
-        description="Names of two bodies or components, or of one, which is joined to the ground"
+        description="Names of two bodies or components, or of one that is joined to the ground"
     )
     at: Vector | None = Field(
         default=None,
-        description="Point of the joint at the start; the first body's if not given, which a rod and a slider may "
-        "leave out [length]",
+        description="Point of the joint at the start; for a rod and a slider the first body's centre of mass if not "
+        "given [length]",
     )
 
 
@@ -354,18 +352,18 @@ _RESTITUTION = Field(
     default=None,
     gt=0,
     le=1,
-    description="Speed after over speed before a dry head-on impact, 1 if not given [1]",
+    description="Ratio of the speeds after and before a dry head-on impact, 1 if not given [1]",
 )
 _RESTITUTION_STOKES = Field(
     default=None,
     gt=0,
-    description="β, with which an impact ends with `restitution` · exp(-β/St) of its speed, St its Stokes number, the "
-    "film that the mesh resolves included; balls in a liquid have 35 [1]",
+    description="β: an impact, including the film that the mesh resolves, ends with `restitution` · exp(-β/St) of its "
+    "speed, where St is its Stokes number; 35 for balls in a liquid [1]",
 )
 
 
 class ContactTable(_OpenTable):
-    """Detection and time stepping of contacts, and a force law for all of them; `[[interaction]]` has more laws."""
+    """Detection and time stepping of contacts, and a force law for all of them; `[[interaction]]` adds more laws."""
 
     detector: str = Field(
         default="auto", description="Name of a detector; `auto` takes the cheapest that is exact for the scene"
@@ -380,16 +378,16 @@ class ContactTable(_OpenTable):
     impact_speed: float | None = Field(
         default=None,
         ge=0,
-        description="Speed at which free bodies hit; from gravity, drag and the box if not given [length/time]",
+        description="Impact speed of free bodies; estimated from gravity, drag and the box if not given [length/time]",
     )
     stepping: Literal["substeps", "implicit"] = Field(
         default="substeps",
-        description="How bodies go through contacts: in `substeps`, or in `implicit` steps that keep the energy",
+        description="Integration of bodies in contacts: by `substeps`, or by `implicit` steps that conserve energy",
     )
     substeps: int | None = Field(
         default=None,
         ge=1,
-        description="Substeps of contacts in each step; as many as they need, and no more, if not given [1]",
+        description="Number of substeps of contacts in each step; as many as they need if not given [1]",
     )
 
 
@@ -407,23 +405,25 @@ class InteractionTable(_OpenTable):
         default="all", description="Contacts at `walls`, of `pairs` of bodies, or both"
     )
     names: Annotated[tuple[str, ...], Field(min_length=1, max_length=2)] | None = Field(
-        default=None, description="Bodies or walls: all contacts of one, or that of two with each other"
+        default=None, description="Names of bodies or walls: one for all its contacts, two for those between them"
     )
 
 
 class WakeTable(_Table):
     """Finer cells behind free and prescribed bodies, from x - time·velocity to x and as wide as the body.
 
-    They are there from the second mesh on; a fluid that flows past a fixed body wants `[[mesh.refine]]`, or a
-    `[[mesh.field]]` that follows its flow.
+    They exist from the second mesh on. A flow past a fixed body needs `[[mesh.refine]]`, or a `[[mesh.field]]` that
+    follows the flow.
     """
 
-    time: Positive = Field(description="How long a wake stays fine after its body, at the present velocity [time]")
+    time: Positive = Field(
+        description="Time for which the wake behind a body stays fine, at the body's present velocity [time]"
+    )
     size: Positive = Field(description="Edge length in the wake [length]")
 
 
 class RefineTable(_Table):
-    """A box with finer cells, from which they grow as they do from a body."""
+    """A box with finer cells, which grow outside as they do away from a body."""
 
     lower: Vector = Field(description="Corner of the box with the smallest coordinates [length]")
     upper: Vector = Field(description="Corner of the box with the largest coordinates [length]")
@@ -431,44 +431,46 @@ class RefineTable(_Table):
 
 
 class SizeFieldTable(_OpenTable):
-    """A size field, which says how fine cells are by place and flow; of several the least size counts."""
+    """A size field, which sets the cell size by position and flow; of several the smallest size counts."""
 
     type: str = Field(description="Name of a size field")
 
 
 class MeshTable(_Table):
-    """Resolution of the mesh, and when it is made again."""
+    """Resolution of the mesh, and when it is regenerated."""
 
     size: Positive = Field(description="Edge length far from the bodies [length]")
     size_body: SizeBody = Field(
-        description="Edge length on the bodies; `auto`: half of the thinnest boundary layer d/√Re at the speeds that "
-        "are expected, at most d/10, with the diameter d of a ball of the body's volume [length]"
+        description="Edge length on the bodies; `auto`: half of the thinnest boundary layer d/√Re at the expected "
+        "speeds, at most d/10, where d is the diameter of a ball of the body's volume [length]"
     )
     size_wall: Positive | None = Field(
         default=None,
-        description="Edge length on walls that are not flat; a quarter of the least radius of curvature, where that is "
-        "known, if not given [length]",
+        description="Edge length on walls that are not flat; if not given, a quarter of the smallest radius of "
+        "curvature, where it is known [length]",
     )
     growth: float = Field(default=0.2, gt=0, le=10, description="Growth of the edge length per distance to a body [1]")
     cells_per_gap: int = Field(
         default=2, ge=1, le=100, description="Cells across the gap between surfaces near contact [1]"
     )
     quality: float = Field(default=0.25, gt=0, lt=1, description="Cell quality below which the mesh is regenerated [1]")
-    refinements: int = Field(default=5, ge=0, le=20, description="How many times a facet may be halved in a gap [1]")
+    refinements: int = Field(
+        default=5, ge=0, le=20, description="Number of times that a facet may be halved in a gap [1]"
+    )
     order: Literal[1, 2] = Field(
         default=2, description="1: cells with straight edges; 2: curved along bodies and curved walls [1]"
     )
     inserter: Literal["cad", "fill", "level_set"] | None = Field(
         default=None,
-        description="How bodies come into the first mesh. cad: Netgen meshes the domain less the bodies; fill: it "
-        "fills between facets of both, which stay; level_set: MMG cuts bodies out of a mesh of the domain, for "
-        "comparison. If not given, fill where a shape is made of facets, else cad",
+        description="How the first mesh is made. cad: Netgen meshes the domain minus the bodies; fill: Netgen fills "
+        "the space between the facets of both, which are kept; level_set: MMG cuts the bodies out of a mesh of the "
+        "domain, for comparison. If not given, fill if a shape is made of facets, else cad",
     )
     mesher_timeout: Positive = Field(
         default=600.0, description="Time after which the mesher that fills between facets is stopped [s]"
     )
     remesh_every: Positive | None = Field(
-        default=None, description="Age at which a mesh is regenerated in any case; never if not given [time]"
+        default=None, description="Age of a mesh at which it is always regenerated; never if not given [time]"
     )
     wake: WakeTable | None = Field(default=None, description="Finer cells behind moving bodies")
     refine: tuple[RefineTable, ...] = Field(default=(), description="Boxes with finer cells")
@@ -482,12 +484,12 @@ class TimeTable(_Table):
     step: Positive = Field(description="Size of a step [time]")
     tolerance: Annotated[float, Field(ge=1e-6, le=0.1)] | None = Field(
         default=None,
-        description="Local error that a step may have, relative and per unit time: `step` is then the longest step; "
-        "all steps are as long as they can be if not given [1]",
+        description="Allowed local error of a step, relative and per unit time; `step` is then the longest step. If "
+        "not given, only steps that cannot be taken whole are shorter than `step` [1]",
     )
     shortest: Positive = Field(
         default_factory=lambda table: table["step"] / 1024,
-        description="Size below which a step is not cut further; step/1024 if not given [time]",
+        description="Size below which a step is not shortened further; step/1024 if not given [time]",
     )
 
 
