@@ -266,8 +266,8 @@ def keeps(energy: float) -> tuple[Demand, ...]:
     return (*STEADY, Demand("energy unaccounted for", at_most=energy))
 
 
-CREATED, MOST_CREATED = 0.01, 0.03
-"""Of what was put in; the first with steps of a millisecond and below."""
+CREATED = 0.01
+"""Of what was put in, with any step."""
 LOST = {0.5e-3: 0.04, 1e-3: 0.07, 2e-3: 0.15}
 """Of what was put in, by step; more with longer ones."""
 MOST_LOST = 0.3
@@ -275,10 +275,9 @@ MOST_LOST = 0.3
 
 def balanced(step: float) -> tuple[Demand, ...]:
     """In a fluid: energy that comes from nowhere, also in the first step, and that vanishes, with this step."""
-    created = CREATED if step <= 1e-3 else MOST_CREATED
     lost = next((share for longest, share in LOST.items() if step <= longest), MOST_LOST)
-    at_first = Demand("energy created by the first step", at_most=MOST_CREATED)
-    return Demand("energy created", at_most=created), at_first, Demand("energy lost", at_most=lost)
+    at_first = Demand("energy created by the first step", at_most=CREATED)
+    return Demand("energy created", at_most=CREATED), at_first, Demand("energy lost", at_most=lost)
 
 
 SOFTEST = {"centre": 1e-6, "normal": 1e-5, "barrier": 1e-2}
