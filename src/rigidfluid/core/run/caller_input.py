@@ -1,4 +1,4 @@
-"""What a caller gives a run: a folder, times, and numbers for a body."""
+"""Checks of the input that a caller gives a run: a folder, times, and numbers for a body."""
 
 from __future__ import annotations
 
