@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from rigidfluid.errors import RigidfluidError
-from rigidfluid.post.python_process import environment, failure, python
+from rigidfluid.python_process import environment, failure, python
 
 
 class LaunchError(RigidfluidError):

@@ -77,6 +77,7 @@ def test_other_shapes_are_refused_by_number_with_a_remedy() -> None:
         SphereDetector(PartOptions(), bodies, [])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_kept_neighbours_find_what_a_new_search_finds(dimension: int) -> None:
     random = np.random.default_rng(1)

@@ -31,6 +31,7 @@ def to_the_tube(x: np.ndarray) -> np.ndarray:
     return 1.0 - np.where((x[:, 0] < 3.0) & (x[:, 2] > 4.0), bend, straight)
 
 
+@pytest.mark.long
 def test_a_tube_written_and_read_back_is_exact(tmp_path: Path) -> None:
     tube = drawn(bent_tube(), tmp_path)
     assert set(tube.names) == {"wall", "inflow", "outflow"}
@@ -108,6 +109,7 @@ def test_round_ends_are_known_as_disks(tmp_path: Path) -> None:
     assert isinstance(section(left.pieces[left.names.index("left")]), Rectangle)
 
 
+@pytest.mark.long
 def test_a_body_is_meshed_in_a_tube(tmp_path: Path) -> None:
     tube, body, pose = drawn(bent_tube(), tmp_path), ball(0.4, 3), upright([0.0, 0.0, 2.0])
     mesh = initial_mesh(FluidDomain([body], pose, tube, surfaces_of(tube, 1)), Sizes(0.6, 0.3))

@@ -56,7 +56,13 @@ def test_a_part_has_its_own_contact_with_a_wall():
     assert found == [(0, 3)]
 
 
-@pytest.mark.parametrize("detector", ["sphere", "brute_force", "narrow_band", "fast_marching"])
+@pytest.mark.parametrize(
+    "detector",
+    [
+        "sphere",
+        *(pytest.param(name, marks=pytest.mark.long) for name in ("brute_force", "narrow_band", "fast_marching")),
+    ],
+)
 def test_every_detector_leaves_them_out_of_the_forces(detector):
     """Two parts side by side stay at rest; the third, no part of it, is pushed off the second and pushes it back."""
     scene = chain("snake", "snake", None, mesh=True, detector=detector)

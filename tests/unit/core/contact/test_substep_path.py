@@ -41,6 +41,7 @@ def test_a_wall_gives_all_speed_back():
     assert bodies["vy"][-1] == pytest.approx(SPEED, rel=1e-6)
 
 
+@pytest.mark.long
 def test_a_shallow_contact_lasts_as_long_as_the_formula_says():
     """T_c = 2.80436 w_m/v₀ with w_m = (3 ε m v₀²/[2 (R + range)])^(1/3), R = 2r at a wall."""
     speed, epsilon = 0.01, 1e-5
@@ -95,6 +96,7 @@ def test_a_tilted_ellipse_keeps_its_energy():
     np.testing.assert_allclose(energies, energies[0], rtol=1e-5)
 
 
+@pytest.mark.long
 def test_a_torque_of_the_wrong_sign_would_be_seen(monkeypatch):
     def flipped(*arguments):
         wrench = contact_wrench(*arguments)

@@ -83,6 +83,7 @@ def test_a_mesh_is_made_anew_at_the_age_that_the_scene_gives():
     assert sorted(set(made)) == pytest.approx([0.0, 0.008, 0.016, 0.024])
 
 
+@pytest.mark.long
 def test_a_run_looks_at_its_cells_sizes_on_the_way_and_heeds_them(monkeypatch):
     """A driven disk goes six growth lengths, far from walls."""
     driven = {"prescribed": {"velocity": [0.0, -10.0]}}

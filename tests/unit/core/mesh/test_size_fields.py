@@ -160,6 +160,7 @@ def test_a_scene_without_fields_is_written_as_before_there_were_any() -> None:
     assert fall({"type": "vorticity", "size": 0.1}).to_dict()["mesh"]["field"] == [{"type": "vorticity", "size": 0.1}]
 
 
+@pytest.mark.long
 def test_a_resumed_run_makes_the_same_meshes(tmp_path: Path) -> None:
     scene = fall({"type": "vorticity", "size": 0.02}).to_dict() | {"output": {"every": 0.012}}
     whole = run(scene_from_dict(scene), tmp_path / "whole")

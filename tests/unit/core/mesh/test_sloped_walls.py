@@ -118,6 +118,7 @@ def test_rims_of_curved_walls_in_sloped_planes_are_on_both(way: Way, tmp_path: P
             assert np.abs(piece.shape.signed_distance(vertices)).max() < 4.0 * EPSILON
 
 
+@pytest.mark.long
 def test_a_run_between_sloped_walls_goes_on_through_ten_meshes(tmp_path: Path) -> None:
     table = {
         "scene": {"name": "sloped", "dimension": 2},

@@ -104,6 +104,7 @@ def test_a_ramp_is_followed_exactly(wet: bool) -> None:
     assert simulation.state.count == 20
 
 
+@pytest.mark.long
 def test_a_ramp_in_3d_turns_on_about_the_new_axis() -> None:
     still = PADDLE | {"position": [0.5, 0.5, 0.5]}
     simulation = Simulation(scene(still, wet=False, end=1.0, step=0.1))

@@ -25,6 +25,7 @@ def dry(*bodies, gravity=(0.0, -10.0), **tables):
     return scene_from_dict(data | tables)
 
 
+@pytest.mark.long
 def test_energy_of_a_driven_ball_that_pushes_a_free_one():
     scene = dry(
         {"position": [5.0, 1.0], "prescribed": {"velocity": [0.0, 0.5]}},

@@ -113,6 +113,7 @@ def test_steps_by_a_tolerance_are_those_of_one_process():
         np.testing.assert_allclose(history.steps["error"], serial.steps["error"], rtol=1e-6)
 
 
+@pytest.mark.long
 def test_a_resumed_run_is_the_uninterrupted_one_to_the_last_bit(tmp_path):
     expected = uninterrupted(2)
     shared(2, tmp_path, end=0.02)

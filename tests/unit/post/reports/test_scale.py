@@ -84,6 +84,7 @@ def test_a_fluid_at_rest_has_a_scale() -> None:
         bar(scale)
 
 
+@pytest.mark.long
 def test_report_and_movie_have_one_scale(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     mesh, time = {"size": 0.4, "size_body": 0.1}, {"step": 0.004, "end": 0.012}
     rigidfluid.run(falling_disk(mesh=mesh, time=time, output={"every": 0.004}), tmp_path)

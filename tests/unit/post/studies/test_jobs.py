@@ -99,6 +99,7 @@ def test_only_what_is_missing_is_run_and_progress_counts_all(tmp_path: Path) -> 
     assert seen == [RunsProgress(3.0, 4, "2 at a time"), RunsProgress(4.0, 4, "2 at a time")]
 
 
+@pytest.mark.long
 def test_a_process_that_ends_is_a_failed_run_and_another_one_goes_on(trouble: Trouble) -> None:
     rows = rows_of(trouble, (*ANSWERS, "answer"), jobs=2)
     assert len(rows) == len(ANSWERS) + 1
