@@ -125,7 +125,7 @@ class FluidTable(_OpenTable):
 class WindowTable(_Table):
     """The meshed part of a long domain, which moves with a body.
 
-    Its rear end is open. At its front end the condition of the domain's end there holds: at rest for a wall.
+    Its rear end is open. Its front end has the condition of the domain's end there: at rest for a wall.
     """
 
     follow: str = Field(description="Name of the body")
