@@ -89,7 +89,8 @@ def no_collection() -> Iterator[None]:
 def remembered_interrupt(ranks: Ranks) -> Iterator[Callable[[], None]]:
     """Make SIGTERM and SIGHUP within a KeyboardInterrupt as Ctrl-C is; give what raises that again where it was lost.
 
-    Python ignores exceptions in finalisers and in what compiled code calls back, most of all where loops are compiled.
+    Python ignores exceptions in finalisers and in what compiled code calls back. While numba compiles a loop, or loads
+    one, an interrupt waits for its end: LLVM would end the process, or the loop would be lost for another reason.
     Several processes are all told, and end together at an exchange; a second Ctrl-C ends the one that gets it at once.
     SIGTERM is what mpirun makes of Ctrl-C, and what queues send when the time is up; SIGHUP is the end of a terminal.
     Only the main thread has signals, and other handlers than Python's own are left alone, as nohup's that ignores.
@@ -102,7 +103,7 @@ def remembered_interrupt(ranks: Ranks) -> Iterator[Callable[[], None]]:
     def remember(number: int, frame: FrameType | None) -> None:
         nonlocal pressed
         again, pressed = pressed, True
-        if ranks.size == 1 or again:
+        if again or (ranks.size == 1 and not _is_compiling(frame)):
             signal.default_int_handler(number, frame)
         ranks.interrupt()
 
@@ -121,6 +122,15 @@ def remembered_interrupt(ranks: Ranks) -> Iterator[Callable[[], None]]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+def _is_compiling(frame: FrameType | None) -> bool:
+    """Whether numba compiles or loads a loop in a ``frame`` or one that has called it."""
+    while frame is not None:
+        if frame.f_globals.get("__name__") == "numba.core.dispatcher":
+            return True
+        frame = frame.f_back
+    return False
 
 
 @contextmanager

@@ -6,6 +6,8 @@ import signal
 import sys
 
 import pytest
+from numba import njit
+from numba.core.event import Event, Listener, install_listener
 
 from rigidfluid.core.model.ranks import ALONE
 from rigidfluid.core.run.process import remembered_interrupt
@@ -28,6 +30,42 @@ def test_an_interrupt_in_a_finaliser_comes_later(monkeypatch: pytest.MonkeyPatch
             interrupt_if_lost()
     assert not told
     assert sys.unraisablehook == told.append
+
+
+class Impatient(Listener):
+    """Sends a signal where numba begins to compile."""
+
+    def on_start(self, event: Event) -> None:
+        signal.raise_signal(signal.SIGINT)
+
+    def on_end(self, event: Event) -> None:
+        pass
+
+
+def test_an_interrupt_while_a_loop_is_compiled_waits_for_its_end() -> None:
+    @njit
+    def doubled(number: float) -> float:
+        return 2.0 * number
+
+    with remembered_interrupt(ALONE) as interrupt_if_lost:
+        with install_listener("numba:compile", Impatient()):
+            assert doubled(1.0) == 2.0
+        with pytest.raises(KeyboardInterrupt):
+            interrupt_if_lost()
+
+
+def test_a_second_interrupt_does_not_wait() -> None:
+    @njit
+    def halved(number: float) -> float:
+        return 0.5 * number
+
+    with (
+        pytest.raises(KeyboardInterrupt),
+        remembered_interrupt(ALONE),
+        install_listener("numba:compile", Impatient()),
+        install_listener("numba:compile", Impatient()),
+    ):
+        halved(1.0)
 
 
 TWICE = SystemError("returned a result with an exception set")
