@@ -2,7 +2,7 @@
 
     python tools/attack.py KIND [--count N] [--seed S]
 
-KIND is one of `scenes`, `overrides`, `geometry`, `checkpoints`, `kills`, `soak`; `page` writes
+KIND is one of `scenes`, `overrides`, `parts`, `geometry`, `checkpoints`, `kills`, `soak`; `page` writes
 docs/attack.md from what is kept of them all in out/attack. Exits with 1 where something did not hold. Needs
 the extra `test`, and a system with fork and /proc.
 """
@@ -24,6 +24,7 @@ from checkout import commit
 KINDS: dict[str, tuple[str, str, int]] = {
     "scenes": ("attacks.scenes", "attack_scenes", 1500),
     "overrides": ("attacks.scenes", "attack_settings", 750),
+    "parts": ("attacks.parts", "attack_by_parts", 1000),
     "geometry": ("attacks.geometry", "attack_geometry", 350),
     "checkpoints": ("attacks.checkpoints", "attack_checkpoints", 400),
     "kills": ("attacks.kills", "attack_by_kills", 125),

@@ -24,6 +24,12 @@ the scene itself names. Warnings count as errors.
     "overrides": """
 The same with shipped scenes and one or two settings, as after `--set`.
 """,
+    "parts": """
+Parts of which one answer is not what it should be: of another type or shape, not finite, negative where it cannot be,
+an exception, an exit, found twice or not at all, forces that are no slope of their energy. Each is met by a run in
+substeps, by one in implicit steps where it is a law or a detector, by a check, or by a run in a fluid. It holds if an
+error of rigidfluid names the part.
+""",
     "geometry": """
 Files of geometry, and a table over time, with damage to their bytes, and other things in their place. A scene with
 such a file is read, checked and begun. It holds if that comes to its end, or is refused by the name of the key or the
@@ -45,6 +51,7 @@ the last one are those of the unbroken run to the last bit. Where the end came f
 TITLES = {
     "scenes": "Hostile scenes",
     "overrides": "Hostile settings",
+    "parts": "Parts that lie",
     "geometry": "Damaged files of geometry",
     "checkpoints": "Damaged checkpoints and tables",
     "kills": "Kills",
