@@ -47,4 +47,5 @@ def run_time_findings(size: RunSize, system: System, time: TimeTable) -> Iterato
 def time_in_words(least: float, most: float) -> str:
     """A time between two [s], in the unit that suits it."""
     _, unit, name = next(row for row in _UNITS if most >= row[0])
-    return f"{least / unit:.2g} to {most / unit:.2g} {name}"
+    shortest, longest = (float(f"{time / unit:.2g}") for time in (least, most))
+    return f"{shortest:g} to {longest:g} {name}"

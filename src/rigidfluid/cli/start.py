@@ -27,7 +27,7 @@ NewFile = Annotated[Path, typer.Argument(metavar="FILE", help="Scene file to wri
 Dimension = Annotated[int | None, typer.Option(min=2, max=3, help="Number of space dimensions; 2 if not given.")]
 Bodies = Annotated[int | None, typer.Option(min=1, max=200, help="Number of bodies; 1 if not given.")]
 ShapeName = Annotated[Shape | None, typer.Option(help="Of the bodies; sphere if not given: in 2D a disk.")]
-Size = Annotated[float | None, typer.Option(help="Width of the box in the units; 2 cm if not given.")]
+Size = Annotated[float | None, typer.Option(min=0.0, help="Width of the box in the units; 2 cm if not given.")]
 FluidName = Annotated[Fluid | None, typer.Option(help="In the box; oil if not given.")]
 Gravity = Annotated[float | None, typer.Option(min=0.0, help="Downwards, in the units; the Earth's if not given.")]
 UnitsName = Annotated[Units | None, typer.Option(help="Of lengths, with s and g, kg or mg.")]

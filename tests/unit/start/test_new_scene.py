@@ -38,6 +38,12 @@ def new(*arguments: object) -> Result:
     return CliRunner().invoke(app, ["new", *map(str, arguments)], env={"COLUMNS": "200"})
 
 
+def test_a_negative_size_is_refused_by_its_option() -> None:
+    refused = new("mine.toml", "--size", -1)
+    assert refused.exit_code == 2
+    assert "--size" in refused.output
+
+
 @pytest.mark.parametrize("flags", GRID, ids=lambda flags: " ".join(map(str, flags)) or "defaults")
 def test_what_is_written_passes_its_check_without_a_warning(flags: tuple[object, ...], tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"

@@ -44,7 +44,9 @@ def made_size(points: FloatArray, fluid_domain: FluidDomain, sizes: Sizes) -> tu
     edge = {key: facet_edge(body, sizes.size_body) for key, body in shapes.items()}
     reach = max(reach_of_bodies(sizes), sizes.size / _GROWTH_FROM_FACETS)
     for i, body in enumerate(bodies):
-        near = np.flatnonzero(np.linalg.norm(points - pose.position[i], axis=1) < body.bounding_radius + reach)
+        least = np.linalg.norm(points - pose.position[i], axis=1) - body.bounding_radius
+        decides = (least < second) | (edge[shape_key(body)] + _GROWTH_FROM_FACETS * least < kept)
+        near = np.flatnonzero((least < reach) & decides)
         distance = distance_to_body(pose, i, body, points[near])
         second[near] = np.minimum(second[near], np.maximum(first[near], distance))
         first[near] = np.minimum(first[near], distance)
