@@ -78,7 +78,8 @@ class RunResults(History):
             raise OutputError(f"{self.folder}, fields", "none", allowed, remedy)
         first, latest = series[0][0], series[-1][0]
         wanted = latest if time is None else time
-        if not (first <= wanted <= latest or math.isclose(wanted, latest)):
+        is_number = isinstance(wanted, float | int | np.number)
+        if not (is_number and (first <= wanted <= latest or math.isclose(wanted, latest))):
             allowed, remedy = f"{first:.6g} to {latest:.6g}", "Choose one of `times`."
             raise OutputError(f"{self.folder}, time of fields", wanted, allowed, remedy)
         nearest, path = min(series, key=lambda one: abs(one[0] - wanted))

@@ -150,7 +150,7 @@ def test_a_time_outside_the_outputs_is_refused(tmp_path: Path) -> None:
     simulation.close()
     results = load_results(tmp_path)
     assert results.fields(0.02 * (1 + 1e-12)).time == pytest.approx(0.02)
-    for time in (-0.001, 0.021, math.inf, math.nan):
+    for time in (-0.001, 0.021, math.inf, math.nan, "x"):
         with pytest.raises(OutputError, match=f"time of fields: found {time}; allowed is 0 to 0.02"):
             results.fields(time)
 

@@ -17,6 +17,7 @@ from rigidfluid.core.scene.overrides import override
 from rigidfluid.core.scene.places import told_in_file
 from rigidfluid.core.scene.scene import AUTO, Scene, read_toml
 from rigidfluid.core.scene.validation import read_table
+from rigidfluid.errors import ArgumentError
 from rigidfluid.registry import FLUID_BACKEND, Registry, missing_packages
 
 
@@ -94,11 +95,13 @@ def load_scene(path: str | Path, overrides: Iterable[str] = ()) -> Scene:
     Raises
     ------
     SceneError
-        If the file cannot be read, is no TOML, or says something that is not allowed, and in which line; SceneErrors
+        If the file cannot be read or is not named by a path, is no TOML, or says something that is not allowed, and in which line; SceneErrors
         if there are several such things.
     PluginError
         If it names a part that is not there.
     """
+    if not isinstance(path, str | Path):
+        raise ArgumentError("path", repr(path), "a path", "Give a scene file; scene_from_dict takes tables.")
     assignments = tuple(overrides)
     data = read_toml(Path(path))
     with told_in_file(Path(path), assignments):

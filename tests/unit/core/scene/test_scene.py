@@ -27,7 +27,7 @@ from rigidfluid.core.fluid.conditions import NoSlip, PrescribedPressure, Prescri
 from rigidfluid.core.scene.overrides import override
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.domains.box import NAMES
-from rigidfluid.errors import PluginError, SceneError
+from rigidfluid.errors import ArgumentError, PluginError, SceneError
 from rigidfluid.registry import Registry
 
 SCENE_FILES = sorted(SCENES.glob("*.toml"))
@@ -284,6 +284,11 @@ def test_bad_geometry_is_refused(changes: dict[str, Any], field: str, text: str)
         build_system(scene)
     assert caught.value.subject == field
     assert text in str(caught.value)
+
+
+def test_a_scene_file_is_named_by_a_path() -> None:
+    with pytest.raises(ArgumentError, match="path: found None; allowed is a path. Give a scene file"):
+        load_scene(None)  # type: ignore[arg-type]
 
 
 def test_the_advised_size_is_accepted() -> None:
