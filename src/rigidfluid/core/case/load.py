@@ -95,8 +95,8 @@ def load_scene(path: str | Path, overrides: Iterable[str] = ()) -> Scene:
     Raises
     ------
     SceneError
-        If the file cannot be read or is not named by a path, is no TOML, or says something that is not allowed, and in which line; SceneErrors
-        if there are several such things.
+        If the file cannot be read or is not named by a path, is no TOML, or says something that is not allowed, and in
+        which line; SceneErrors if there are several such things.
     PluginError
         If it names a part that is not there.
     """

@@ -287,7 +287,7 @@ def test_bad_geometry_is_refused(changes: dict[str, Any], field: str, text: str)
 
 
 def test_a_scene_file_is_named_by_a_path() -> None:
-    with pytest.raises(ArgumentError, match="path: found None; allowed is a path. Give a scene file"):
+    with pytest.raises(ArgumentError, match=r"path: found None; allowed is a path\. Give a scene file"):
         load_scene(None)  # type: ignore[arg-type]
 
 
