@@ -460,7 +460,7 @@ def test_nothing_to_compare(started: list[tuple[str, bool]], tmp_path: Path) -> 
 def test_results_that_cannot_be_read_are_a_failure(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(runs, "run_apart", lambda *_, **__: "")
     comparison, _ = compare(BOUNCE, ["dry", "pushed"], SHORT, tmp_path)
-    assert all("summary.json" in run.error for run in comparison.failed)
+    assert all("found no folder; allowed is the folder of a run" in run.error for run in comparison.failed)
     assert len(comparison.failed) == 2
 
 
