@@ -26,6 +26,8 @@ from matplotlib.figure import Figure
 from scipy.interpolate import CubicHermiteSpline
 from written_page import measurement, write_page
 
+from rigidfluid.python_process import ONE_THREAD
+
 FOLDER = Path(__file__).parent
 SCENE = FOLDER.parent / "scenes" / "falling_disk.toml"
 STORED: dict[str, Any] = json.loads((FOLDER / "work_precision.json").read_text(encoding="utf-8"))
@@ -35,7 +37,6 @@ END = 0.712  # s, when the disk is below the last height in all runs
 # its steps are bounded by the explicit convection, and a coarse mesh far from the disk makes them cheap.
 OURS = ((0.05, 0.008), (0.025, 0.004), (0.0125, 0.002), (0.01, 0.001))
 NGSOLVE = ((0.3, 0.3, 0.05, 0.005), (0.3, 0.2, 0.05, 0.004), (0.2, 0.2, 0.025, 0.003), (0.15, 0.2, 0.025, 0.002))
-THREADS = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ def error_of(times: np.ndarray) -> float:
 def cpu_seconds(command: Sequence[str]) -> float:
     """User and system seconds of a command on one thread."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run(command, env=os.environ | THREADS, stdout=subprocess.DEVNULL, check=True)
+    subprocess.run(command, env=os.environ | ONE_THREAD, stdout=subprocess.DEVNULL, check=True)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 

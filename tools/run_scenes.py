@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from rigidfluid.core.run.summary import warnings_of
+from rigidfluid.python_process import ONE_THREAD
 
 ROOT = Path(__file__).parents[1]
 
@@ -27,8 +28,7 @@ def run(scene: Path, folder: Path) -> dict[str, Any]:
     if read_summary(folder).get("status") != "complete":
         command = [sys.executable, "-m", "rigidfluid", "run", str(scene), "--out", str(folder)]
         command += ["--resume"] if (folder / "state.h5").exists() else []
-        threads = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
-        done = subprocess.run(command, env=os.environ | threads, capture_output=True, text=True, check=False)
+        done = subprocess.run(command, env=os.environ | ONE_THREAD, capture_output=True, text=True, check=False)
         if done.returncode:
             return read_summary(folder) | {"status": done.stderr.strip() or f"exit code {done.returncode}"}
     return read_summary(folder)

@@ -11,9 +11,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from page_tools.cpu_time import cpu_seconds
-from page_tools.make import PATHS, THREADS
+from page_tools.make import PATHS
 from page_tools.places import ROOT
 from page_tools.provenance import commit, file_digest, source_digest
+from rigidfluid.python_process import ONE_THREAD
 
 MARK = "pytest.mark.validation"
 OUTCOMES = {"failure": "failed", "error": "failed", "skipped": "skipped"}
@@ -57,7 +58,7 @@ def _run(path: Path, told: Path) -> Found:
     told.unlink(missing_ok=True)
     home = next(folder for folder in path.parents if (folder / "pyproject.toml").exists())
     words = ["-m", "pytest", "-q", "-m", "validation", f"--junitxml={told}", str(path)]
-    environment = dict.fromkeys(THREADS, "1") | os.environ | {"PYTHONPATH": os.pathsep.join(map(str, PATHS))}
+    environment = ONE_THREAD | os.environ | {"PYTHONPATH": os.pathsep.join(map(str, PATHS))}
     start = cpu_seconds()
     subprocess.run([sys.executable, *words], cwd=home, env=environment, check=False)
     by_outcome: dict[str, list[str]] = {"passed": [], "failed": [], "skipped": []}

@@ -14,10 +14,10 @@ from typing import Any
 
 from page_tools.places import PAGES, ROOT, generators
 from page_tools.provenance import COMMIT, commit
+from rigidfluid.python_process import ONE_THREAD
 
 CORES = 2
 PATHS = (ROOT / "src", ROOT / "docs", ROOT / "tests" / "support")
-THREADS = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
 MEASURED = {
     "backends": "benchmarks/backends.py",
     "contact_step": "benchmarks/contact_step.py",
@@ -48,7 +48,7 @@ def make(name: str, *, fresh: bool = False, present: bool = False, folder: Path 
     command = [*_python(name), *words]
     print(shlex.join(command), flush=True)
     path = os.pathsep.join([*map(str, PATHS), *filter(None, [os.environ.get("PYTHONPATH")])])
-    environment = dict.fromkeys(THREADS, "1") | os.environ | {"PYTHONPATH": path, COMMIT: commit()}
+    environment = ONE_THREAD | os.environ | {"PYTHONPATH": path, COMMIT: commit()}
     return not subprocess.run(command, cwd=ROOT, env=environment, check=False).returncode
 
 

@@ -38,7 +38,7 @@ def ways(lie: Lie) -> dict[str, Callable[[], Any]]:
     runs = {
         f"run by {stepping}": lambda stepping=stepping: rigidfluid.run(_dry(lie, stepping)) for stepping in steppings
     }
-    return runs if lie.key in IN_STEPS else {**runs, "check": lambda: check(_dry(lie, "substeps"))}
+    return runs if lie.key in IN_STEPS else {**runs, "check": lambda: checked(lie)}
 
 
 def checked(lie: Lie) -> None:

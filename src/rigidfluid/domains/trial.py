@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Literal
 
 from rigidfluid.errors import SceneError
-from rigidfluid.python_process import environment, python
+from rigidfluid.python_process import ONE_THREAD, environment, python
 
 Kind = Literal["cad", "mesh"]
 
@@ -51,7 +51,7 @@ def _outcome(kind: Kind, path: Path, dimension: int, size: int, _changed: int) -
             check=False,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
-            env=environment(),
+            env=environment() | ONE_THREAD,  # each thread would take some of the memory that is allowed
         )
     except subprocess.TimeoutExpired:
         return f"took more than {SECONDS:g} seconds"

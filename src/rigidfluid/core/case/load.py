@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -100,7 +101,7 @@ def load_scene(path: str | Path, overrides: Iterable[str] = ()) -> Scene:
     PluginError
         If it names a part that is not there.
     """
-    if not isinstance(path, str | Path):
+    if not isinstance(path, str | PathLike):
         raise ArgumentError("path", repr(path), "a path", "Give a scene file; scene_from_dict takes tables.")
     assignments = tuple(overrides)
     data = read_toml(Path(path))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from os import PathLike
 from pathlib import Path
 
 import numpy as np
@@ -50,7 +51,7 @@ def folder_of(out: Path | None) -> Path | None:
     """Folder for the results, None for none; raises ArgumentError."""
     if out is None:
         return None
-    if not isinstance(out, str | Path) or not str(out):
+    if not isinstance(out, str | PathLike) or not str(out):
         raise ArgumentError("out", repr(out), "a path, or None", "Give '.' for the working folder.")
     return Path(out)
 
