@@ -19,7 +19,8 @@ ROOT = 0
 
 
 class Ranks(ABC):
-    """Processes that run the same loop; every method but `interrupt` and `abort` is called by all of them together.
+    """Processes that run the same loop; every method but `interrupt`, `forget_interrupts` and `abort` is called by
+    all of them together.
 
     ``rank`` is this one's number, from 0 to ``size`` - 1.
     """
@@ -36,6 +37,10 @@ class Ranks(ABC):
     def interrupt(self) -> None:
         """Have all raise SharedInterrupt at their next `allgather`; safe to call from a signal's handler."""
         self._is_interrupted = True
+
+    def forget_interrupts(self) -> None:
+        """Let a run that has ended interrupt no later one."""
+        self._is_interrupted = False
 
     @final
     def allgather(self, item: T) -> list[T]:

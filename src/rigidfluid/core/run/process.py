@@ -122,6 +122,7 @@ def remembered_interrupt(ranks: Ranks) -> Iterator[Callable[[], None]]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+        ranks.forget_interrupts()
 
 
 def _is_compiling(frame: FrameType | None) -> bool:
