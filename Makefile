@@ -89,7 +89,7 @@ mutants: .venv/.installed-test
 	$(BIN)/python tools/mutants.py --page docs/mutants.md
 
 bench: .venv/.installed-bench .venv/.installed-plugins
-	$(BIN)/python docs/make_validation.py step work_precision contact_step
+	$(BIN)/python docs/make_validation.py step work_precision contact_step step_profile
 	$(BIN)/python benchmarks/dry_spheres.py
 
 # The versions that are installed here, for those who want the same; run the tests with them first.

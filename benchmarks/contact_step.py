@@ -30,6 +30,8 @@ from rigidfluid.core.scene.scene import Scene  # noqa: E402
 
 HEAD = ("scene", "unknowns", "contacts", "free step [s]", "contact step [s]", "ratio", "steps", "re-meshes")
 PITCH = 0.066
+START = 2.0
+"""Time until the graded start is over, in steps."""
 
 
 @dataclass(frozen=True)
@@ -93,7 +95,7 @@ def without_law(scene: Scene) -> Scene:
 def seconds(scene: Scene, steps: int) -> tuple[Simulation, list[tuple[int, float]]]:
     """Of each step after the graded start the contacts in range and the CPU seconds; of those without contacts only
     where they are of full length, as impacts shorten those after them, which then cost less."""
-    run, found, started = Simulation(scene, None, False), [], False
+    run, found = Simulation(scene, None, False), list[tuple[int, float]]()
     for _ in range(steps):
         start = time.process_time()
         run.step()
@@ -101,8 +103,7 @@ def seconds(scene: Scene, steps: int) -> tuple[Simulation, list[tuple[int, float
         law, coupling = run.system.law, run.state.coupling
         near = 0 if law is None or coupling is None else max(1, int(np.sum(run.state.contacts.gap < law.range)))
         full = (run.state.level or 0) == 0
-        started = started or full
-        if started and (near > 0 or full):
+        if run.time >= START * scene.time.step and (near > 0 or full):
             found.append((near, spent))
     return run, found
 

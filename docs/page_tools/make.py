@@ -24,6 +24,7 @@ MEASURED = {
     "parallel": "benchmarks/parallel_page.py",
     "settling_sphere": "benchmarks/settling_sphere.py",
     "step": "benchmarks/step.py",
+    "step_profile": "benchmarks/step_profile.py",
     "work_precision": "benchmarks/work_precision.py",
 }
 """Pages that tell times, by what measures and writes them."""

@@ -58,6 +58,7 @@ SUBJECTS = {
         "adaptive_step": "Steps by a tolerance: when they pay",
         "step": "One step compared with the same step in NGSolve",
         "contact_step": "What a step with contacts costs",
+        "step_profile": "Where the time of a step goes, in twelve classes of scenes",
         "settling_sphere": "Steps in 3D: iterations, time and memory",
         "parallel": "Many balls on several processes",
     },

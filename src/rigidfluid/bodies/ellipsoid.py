@@ -19,7 +19,7 @@ from rigidfluid.errors import SceneError
 class EllipsoidOptions(PartOptions):
     """Keys of a ``[[body]]`` table of type ``ellipsoid``: ``semi_axes``, as many as there are dimensions [length]."""
 
-    semi_axes: list[Annotated[float, Field(gt=0)]] = Field(
+    semi_axes: tuple[Annotated[float, Field(gt=0)], ...] = Field(
         min_length=2,
         max_length=3,
         description="Half the lengths of the axes, along x, y[, z] of the body's frame [length]",

@@ -13,7 +13,7 @@ from rigidfluid.core.geometry.mesher_unit import in_unit
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.errors import SceneError
 
-Point = Annotated[list[float], Field(min_length=2, max_length=2)]
+Point = Annotated[tuple[float, ...], Field(min_length=2, max_length=2)]
 
 _SHORTEST_EDGE = 1e-9
 """Least length of an edge over the size of the polygon [1]."""
@@ -25,7 +25,7 @@ _FOLDED = 1e-9
 class PolygonOptions(PartOptions):
     """Keys of a ``[[body]]`` table of type ``polygon``: ``points``, its corners in order [length]."""
 
-    points: list[Point] = Field(
+    points: tuple[Point, ...] = Field(
         min_length=3,
         description="Corners [x, y] in order, clockwise or counter-clockwise, in any frame: the centre of mass is "
         "placed at `position`, and `angle` rotates the body about it [length]",

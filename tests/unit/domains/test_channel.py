@@ -54,7 +54,7 @@ def channel(*obstacles: dict[str, Any]) -> dict[str, Any]:
         (channel(PIN | {"radius": -1.0}), r"domain.obstacle.0.radius: found -1"),
         (channel(PIN | {"type": "spere"}), r"domain.obstacle.0.type: found 'spere'.*Did you mean 'sphere'"),
         (channel(PIN | {"orientation": [1.0, 0.0, 0.0, 0.0]}), r"domain.obstacle.0.orientation: .*no quaternion in 2D"),
-        (channel({"type": "sphere", "radius": 0.1}), r"domain.obstacle.0.position: found nothing"),
+        (channel({"type": "sphere", "radius": 0.1}), r"domain.obstacle.0.position: this key is missing"),
         (
             channel(PIN | {"type": "ellipsoid", "semi_axes": [0.1]}),
             r"obstacle.0.radius: found a key that nothing reads",

@@ -30,9 +30,11 @@ class PairList:
     reach: float
 
     def holds(self, position: FloatArray, reach: float) -> bool:
-        """Whether no other pair can have come within ``reach``, since nothing has moved far enough."""
+        """Whether no other pair can be within ``reach``: all pairs are in the list, or nothing has moved far."""
+        if np.isinf(self.reach):
+            return True
         spare = 0.5 * (self.reach - reach)
-        return spare > 0.0 and (np.isinf(spare) or bool(_all_near(position, self.position, spare)))
+        return spare > 0.0 and bool(_all_near(position, self.position, spare))
 
 
 class NearPairs:

@@ -248,8 +248,8 @@ def _missing_key(place: _Place, table: Mapping[str, Any], key: str) -> SceneErro
         return misspelt
     meaning = fields[key].description
     if meaning is None and _table_in(fields[key].annotation) is not None:
-        return SceneError(place.field, "nothing", "a table", f"Add the table [{place.field}].")
-    return SceneError(place.field, "nothing", meaning or "a value", f"Add the key {key!r}.")
+        return SceneError(place.field, "this table is missing", None, f"Add the table [{place.field}].")
+    return SceneError(place.field, "this key is missing", None, f"Add {key!r}{f': {meaning}' if meaning else ''}.")
 
 
 def _misspelt_key(field: str, table: Mapping[str, Any], key: str, known: Iterable[str]) -> SceneError | None:

@@ -38,6 +38,10 @@ def _components(value: Any) -> tuple[float, ...]:
     return tuple(row.tolist())
 
 
+def _rotation(value: Any) -> tuple[float, ...]:
+    return _components([value] if isinstance(value, int | float | np.generic) else value)
+
+
 def _row(value: Any) -> Any:
     """A list as a tuple; other values as they are, for whoever refuses them."""
     return tuple(value) if isinstance(value, list) else value
@@ -48,6 +52,8 @@ Positive = Annotated[float, BeforeValidator(_plain), Field(gt=0, le=LARGEST)]
 NotNegative = Annotated[float, BeforeValidator(_plain), Field(ge=0, le=LARGEST)]
 Name = Annotated[str, Field(min_length=1, pattern=PRINTABLE)]
 Vector = Annotated[Sequence[float] | FloatArray, PlainValidator(_components)]
+AngularVector = Annotated[float | Sequence[float] | FloatArray, PlainValidator(_rotation)]
+"""A row of numbers, or a number in 2D."""
 AnyRow = BeforeValidator(_row)
 """Lets a list stand for a tuple."""
 

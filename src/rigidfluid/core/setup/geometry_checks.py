@@ -85,12 +85,15 @@ def _check_overlap(model: Model, contacts: Contacts) -> None:
     a, b, depth = int(contacts.body_a[worst]), int(contacts.body_b[worst]), abs(float(contacts.gap[worst]))
     body, kind = model.all_bodies[a], "body" if b < len(model.all_bodies) else "surface"
     other = f"{kind} {model.surfaces[b]!r}" + (" of the domain" if kind == "surface" else "")
+    where = f"overlaps {other} by {depth:.6g}" if depth > 0.0 else f"touches {other}"
     whole = {placed.name for placed in model.mechanisms} & {body.part_of}
     raise SceneError(
         f"mechanism {whole.pop()!r}" if whole else f"body.{a}.position",
-        f"{list(body.position)}, where body {body.name!r} overlaps {other} by {depth:.6g}",
+        f"{list(body.position)}, where body {body.name!r} {where}",
         "a place inside the domain and clear of all other surfaces",
-        f"Move it by more than {depth:.6g}, or make it smaller.",
+        f"Move it by more than {depth:.6g}, or make it smaller."
+        if depth > 0.0
+        else "Move it away, or make it smaller.",
     )
 
 

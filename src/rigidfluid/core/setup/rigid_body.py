@@ -11,7 +11,7 @@ from rigidfluid.core.geometry.arrays import BoolArray
 from rigidfluid.core.joints.joint import Joint
 from rigidfluid.core.model.interfaces import Body, Mechanism
 from rigidfluid.core.scene.scene import Freedom, PrescribedTable, SpringTable
-from rigidfluid.core.setup.checked import AnyRow, Name, Number, Positive, Vector, checked
+from rigidfluid.core.setup.checked import AngularVector, AnyRow, Name, Number, Positive, Vector, checked
 
 DIRECTIONS = {2: ("x", "y", "rotation"), 3: ("x", "y", "z", "rx", "ry", "rz")}
 """Names of the d+k directions of motion."""
@@ -26,7 +26,7 @@ class Start:
     angle: Number | None = None
     orientation: Vector | None = None
     velocity: Vector | None = None
-    angular_velocity: Vector | None = None
+    angular_velocity: AngularVector | None = None
 
 
 @checked
@@ -64,8 +64,10 @@ class RigidBody(Start, _Shaped):
         Angle at the start, counter-clockwise; in 2D alone [rad].
     orientation : sequence of float, optional
         Orientation at the start, a quaternion (4,), scalar first; in 3D alone [1].
-    velocity, angular_velocity : sequence of float, optional
-        Those at the start, (d,) and (k,); zero if not given [length/time, rad/time].
+    velocity : sequence of float, optional
+        Velocity at the start, (d,); zero if not given [length/time].
+    angular_velocity : float or sequence of float, optional
+        Angular velocity at the start, in 2D a number or (1,), in 3D (3,); zero if not given [rad/time].
     part_of : str, optional
         Name of the articulated body that it is a part of; parts of one do not repel each other.
     fixed : bool

@@ -46,5 +46,5 @@ def test_without_the_table_there_is_nothing_to_refuse() -> None:
 
 
 def test_a_table_without_its_keys_is_refused() -> None:
-    with pytest.raises(SceneError, match=r"^mesh\.size: found nothing"):
+    with pytest.raises(SceneError, match=r"^mesh\.size: this key is missing"):
         scene_from_dict(dry_tables(BALL, mesh={"size_body": 0.1}))

@@ -224,8 +224,8 @@ REFUSED: dict[str, tuple[Tables, str]] = {
     ),
     "three names": (NORMAL | {"names": ["left", "top", "right"]}, "interaction.0.names: found .*at most 2"),
     "kind": (NORMAL | {"between": "balls"}, "interaction.0.between: found 'balls'; .*walls"),
-    "no range": ({"law": "normal", "epsilon": 1e-6}, "interaction.0.range: found nothing; .*Gap above"),
-    "no law": ({"range": 0.02}, "interaction.0.law: found nothing; .*Name of a force law"),
+    "no range": ({"law": "normal", "epsilon": 1e-6}, "interaction.0.range: this key is missing.*Gap above"),
+    "no law": ({"range": 0.02}, "interaction.0.law: this key is missing.*Name of a force law"),
     "gap": (NORMAL | {"smallest_gap": 0.02}, r"interaction.0.smallest_gap: found 0.02; .*interaction.0.range = 0.02"),
     "key of the detector": (
         NORMAL | {"samples": 3},

@@ -60,7 +60,10 @@ def tables(*boundary: Any, **changes: Any) -> dict[str, Any]:
             "velocity. Did you mean 'velocity'?",
         ),
         (INLET | {"over_time": {"flie": "a"}}, "boundary.1.over_time.flie: found a key that nothing reads"),
-        (LEFT | {"type": "pressure"}, "boundary.1.pressure: found nothing; allowed is Pressure on the surface"),
+        (
+            LEFT | {"type": "pressure"},
+            "boundary.1.pressure: this key is missing. Add 'pressure': Pressure on the surface",
+        ),
         (LEFT | {"type": "periodic", "pressure_drop": "1"}, "boundary.1.pressure_drop: found '1'; allowed is a valid"),
         (LEFT | {"type": "symetry"}, "boundary.1.type: found 'symetry'; allowed is 'wall', 'velocity', "),
         (LEFT | {"type": True}, "boundary.1.type: found True; allowed is 'wall', "),
@@ -145,11 +148,11 @@ class Holder(BaseModel):
     ("data", "message"),
     [
         ({"one": {"form": "disc", "size": 1.0}}, "it.one.size: size is valid only with form = 'slab', not 'disc'"),
-        ({"one": {"form": "disc"}}, "it.one.radius: found nothing; allowed is a value. Add the key 'radius'"),
+        ({"one": {"form": "disc"}}, "it.one.radius: this key is missing. Add 'radius'"),
         ({"one": {"form": "slab", "size": [1.0, "a"]}}, "it.one.size.1: found 'a'"),
         ({"one": {"form": "dics", "size": 1.0}}, "it.one.form: found 'dics'; allowed is 'disc', 'slab'. Did you mean"),
         ({"one": {"size": 1.0}}, "it.one.form: found nothing; allowed is 'disc', 'slab'. Add the key 'form'"),
-        ({"one": {"form": "disc", "radius": 1.0}, "many": [{"form": "disc"}]}, "it.many.0.radius: found nothing"),
+        ({"one": {"form": "disc", "radius": 1.0}, "many": [{"form": "disc"}]}, "it.many.0.radius: this key is missing"),
     ],
 )
 def test_a_part_may_tell_its_tables_apart_by_a_key(data: dict[str, Any], message: str) -> None:

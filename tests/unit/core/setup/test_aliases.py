@@ -63,7 +63,7 @@ def test_a_component_gives_it_too() -> None:
 
 REFUSED = {
     "the field's own name": ({"radius": 0.1}, r"body\.0\.radius: found a key that nothing reads.*half-width"),
-    "nothing": ({}, r"body\.0\.half-width: found nothing; allowed is Half of its width"),
+    "nothing": ({}, r"body\.0\.half-width: this key is missing\. Add 'half-width': Half of its width"),
     "no number": ({"half-width": "wide"}, r"body\.0\.half-width: found 'wide'.*Half of its width"),
 }
 

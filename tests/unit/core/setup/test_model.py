@@ -314,7 +314,7 @@ def test_a_model_made_of_that_of_a_scene_is_not_told_by_the_scene() -> None:
 
 
 def test_a_table_made_in_python_is_refused_as_one_that_is_read() -> None:
-    with pytest.raises(SceneError, match=r"TimeTable.step: found nothing"):
+    with pytest.raises(SceneError, match=r"TimeTable.step: this key is missing"):
         TimeTable(end=1.0)  # type: ignore[call-arg]
     with pytest.raises(SceneError, match=r"MeshTable.size: found -1.0"):
         MeshTable(size=-1.0, size_body=0.1)

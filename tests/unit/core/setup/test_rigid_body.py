@@ -33,6 +33,10 @@ def test_values_without_names_are_taken_in_this_order() -> None:
     assert body.part_of == "whole"
 
 
+def test_in_the_plane_an_angular_velocity_is_a_number_too() -> None:
+    assert RigidBody("ball", BALL, 2.0, (0.5, 0.7), angular_velocity=3.0).angular_velocity == (3.0,)
+
+
 def test_a_value_of_the_start_is_refused_by_the_name_of_its_class() -> None:
     with pytest.raises(ArgumentError, match=r"^RigidBody\.position: found 'here'"):
         RigidBody("ball", BALL, 2.0, "here")
