@@ -242,7 +242,7 @@ def _least_gap(bodies: Sequence[Body], pose: Pose, corner: FloatArray) -> float:
 def _body(semi_axes: list[float]) -> Body:
     if len(set(semi_axes)) == 1:
         return Sphere(SphereOptions(radius=semi_axes[0]), len(semi_axes))
-    return Ellipsoid(EllipsoidOptions(semi_axes=semi_axes), len(semi_axes))
+    return Ellipsoid(EllipsoidOptions(semi_axes=tuple(semi_axes)), len(semi_axes))
 
 
 def _barycentric(corners: int) -> FloatArray:

@@ -38,8 +38,8 @@ class Moving(Protocol):
         """Velocity of the centre of mass, None at rest [length/time]."""
 
     @property
-    def angular_velocity(self) -> Sequence[float] | FloatArray | None:
-        """Angular velocity (k,), None at rest [rad/time]."""
+    def angular_velocity(self) -> float | Sequence[float] | FloatArray | None:
+        """Angular velocity (k,), in 2D a number too, None at rest [rad/time]."""
 
 
 def check_orientation(table: Placement, dimension: int, at: str) -> None:

@@ -23,7 +23,7 @@ _HALVINGS = 60
 _REYNOLDS = 1e-12, 1e12
 _NEWTON_REYNOLDS, _NEWTON_DRAG = 1000.0, 0.44
 
-Vectors = Sequence[float] | FloatArray | None
+Vectors = float | Sequence[float] | FloatArray | None
 
 
 @dataclass(frozen=True)

@@ -139,4 +139,4 @@ class DetectorGaps(Kernel):
 def _body(semi_axes: list[float]) -> Body:
     if len(set(semi_axes)) == 1:
         return Sphere(SphereOptions(radius=semi_axes[0]), len(semi_axes))
-    return Ellipsoid(EllipsoidOptions(semi_axes=semi_axes), len(semi_axes))
+    return Ellipsoid(EllipsoidOptions(semi_axes=tuple(semi_axes)), len(semi_axes))
