@@ -100,7 +100,7 @@ error is when the impact takes place, and is of order {first_order:.1f} between 
 
 ![A disk in a fluid](contact_stepping_in_fluid.png)
 
-`studies/contact_stepping_in_fluid.toml`: the speed on the way up after an impact. The reference is known to 5e-4.
+`studies/contact_stepping_in_fluid.toml`: the speed on the way up after an impact. The reference is known to 1e-4.
 Until the step resolves the impact its error depends on where in a step the impact falls, so that single runs are right
 by luck.
 
