@@ -16,6 +16,10 @@ from rigidfluid.core.scene.scene import Scene
 APART_UNTIL = 144.0
 """The paths are the same until a gap is below .24, so that the second one starts where the first is before that."""
 
+FINER = ["mesh.size=4.0", "mesh.size_body=0.3", "time.end=400.0"]
+MOMENTS = (40.0, 120.0, 200.0, 300.0, 400.0)
+"""Times at which the paths on two meshes are compared, whole cycles."""
+
 SNAPSHOTS = 5
 
 
@@ -37,10 +41,13 @@ def page(work: Work) -> Page:
     """The path by both readings, and its figures."""
     first = Reading(work.run("range_0.03", "swimmer_near_wall.toml", ["time.end=1400.0"]), 0.0)
     second = Reading(work.run("range_0.24", for_its_size(work, first)), APART_UNTIL)
+    finer = Reading(work.run("finer", "swimmer_near_wall.toml", FINER), 0.0)
     readings = {"range .03, as printed": first, "range .24, for its size": second}
     rows = [line(*named) for named in readings.items()]
     return Page(
-        "A swimmer near a wall", ABOUT.format(rows=table(HEAD, rows), **judged(first, second)), {"": paths(readings)}
+        "A swimmer near a wall",
+        ABOUT.format(rows=table(HEAD, rows), meshes=two_meshes(first, finer), **judged(first, second)),
+        {"": paths(readings)},
     )
 
 
@@ -101,17 +108,34 @@ def line(label: str, reading: Reading) -> tuple[str, ...]:
     )
 
 
+def two_meshes(first: Reading, finer: Reading) -> str:
+    """Place and angle at some moments with cells of .6 and of .3."""
+    rows = []
+    for moment in MOMENTS:
+        found = []
+        for reading in (first, finer):
+            whole = reading.of_body("swimmer")
+            there = int(np.flatnonzero(whole["time"] == moment)[0])
+            found += [whole["x"][there], whole["y"][there], np.degrees(whole["angle"][there])]
+        rows.append((f"{moment:g}", *(f"{value:.3f}" for value in found)))
+    return table(("time", "x", "y", "angle", "x, cells of .3", "y", "angle"), rows)
+
+
 def judged(first: Reading, second: Reading) -> dict[str, object]:
     """What `ABOUT` says of the paths."""
     forces = [np.hypot(whole["cfx"], whole["cfy"]).max() for whole in (r.of_body("swimmer") for r in (first, second))]
     gaps = [reading.run.history.bodies["gap"].min() for reading in (first, second)]
-    moments = [parallel(reading) for reading in (first, second)]
+    turned = map(parallel, (first, second))
+    moments = ["never" if moment is None else f"at {moment:.0f}" for moment in turned]
     return {
         "first": "the wall alone turns it: there is no contact" if forces[0] == 0.0 else "there is contact",
         "second": "the law's force acts" if forces[1] > 0.0 else "there is no contact either",
         "first_gap": gaps[0] / 0.03,
         "second_gap": gaps[1] / 0.24,
-        "moments": " and ".join("never" if moment is None else f"at {moment:.0f}" for moment in moments),
+        "again": " ".join(
+            f"With the range {size} it is {moment} parallel to the wall again."
+            for size, moment in zip((".03", ".24"), moments, strict=True)
+        ),
         "overlap": "No bodies overlap." if min(gaps) > 0.0 else "Bodies overlap.",
     }
 
@@ -132,9 +156,14 @@ is at 144, before any gap is below .24.
 
 The swimmer comes to the wall, and is turned on its way. With the range as printed {first}, and the least gap is
 {first_gap:.1f} times that range. With the range .24 {second}, and the least gap is {second_gap:.2f} times the range.
-It is parallel to the wall again: {moments}. {overlap}
-
-The mesh is coarse (cells of .6 on the balls), and the path depends on when it is made anew.
+{again} {overlap}
 
 {rows}
+
+## Two meshes
+
+The scene's cells are .6 long on the balls and 6 in the middle of the channel. The same with cells of .3 and 4 and the
+range .03:
+
+{meshes}
 """
