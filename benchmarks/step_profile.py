@@ -79,7 +79,7 @@ CASES = (
     Case("impact, 3D", lambda: fluid_contacts.ball_dropped(STEP), touches, 10),
     Case("joints", lambda: shipped("hinged_pair"), under_way, 40),
     Case("dry, two bodies", lambda: shipped("dry_bounce"), under_way, 100),
-    Case("dry, 1,000 spheres", lambda: dry_spheres("centre", 10, 1), under_way, 100),
+    Case("dry, 1,000 spheres", lambda: dry_spheres("centre", 10, 1), under_way, 80),
 )
 
 

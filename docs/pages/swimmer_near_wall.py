@@ -154,9 +154,11 @@ density .1; a cycle takes 4. The printed range .03 and ε 5e-8 are those of a sw
 one the range is .24. Circles are the balls of the first reading at whole cycles. The second one starts where the first
 is at 144, before any gap is below .24.
 
-The swimmer comes to the wall, and is turned on its way. With the range as printed {first}, and the least gap is
+The swimmer comes to the wall, and is turned on its way. With the range as printed
+{first}, and the least gap is
 {first_gap:.1f} times that range. With the range .24 {second}, and the least gap is {second_gap:.2f} times the range.
-{again} {overlap}
+{again}
+{overlap}
 
 {rows}
 
@@ -166,4 +168,7 @@ The scene's cells are .6 long on the balls and 6 in the middle of the channel. T
 range .03:
 
 {meshes}
+
+With the range .24 the rate at which the swimmer turns changes where it is re-meshed, at 402: the right ball is pressed
+onto the contact, and a coarser mesh in its gap resists less.
 """
