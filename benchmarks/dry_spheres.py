@@ -18,47 +18,18 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
+from sphere_lattice import LAWS, RANGE, STEP, dry_spheres
 
-import rigidfluid
 from rigidfluid.core.coupling.schemes import scheme_of
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid_lammps.kinds import kinds
 from rigidfluid_lammps.library import lammps_session
 from rigidfluid_lammps.theirs import build
 
-RADIUS, SPACING, RANGE, STEP = 0.4, 1.0, 0.05, 1e-3
-LAWS: dict[str, dict[str, Any]] = {
-    "centre": {"law": "centre", "range": RANGE, "epsilon": 1e-6},
-    "spring-dashpot": {"law": "spring-dashpot", "range": RANGE, "stiffness": 1e4, "restitution": 0.9},
-}
-
-
-def scene(law: str, side: int, steps: int) -> rigidfluid.Scene:
-    """side³ spheres with random velocities; one step of the run is that many substeps."""
-    random = np.random.default_rng(4)
-    places = (np.stack(np.meshgrid(*[np.arange(side)] * 3), axis=-1).reshape(-1, 3) + 0.5) * SPACING
-    velocities = random.normal(size=places.shape)
-    bodies = [
-        {"type": "sphere", "radius": RADIUS, "density": 1.0, "position": place, "velocity": velocity}
-        for place, velocity in zip(places.tolist(), velocities.tolist(), strict=True)
-    ]
-    block = steps * STEP
-    return rigidfluid.scene_from_dict(
-        {
-            "scene": {"name": "dry_spheres", "dimension": 3},
-            "fluid": {"backend": "dry"},
-            "domain": {"lower": [0.0] * 3, "upper": [side * SPACING] * 3},
-            "body": bodies,
-            "contact": {**LAWS[law], "substeps": steps},
-            "time": {"end": 100 * block, "step": block},
-            "output": {"every": 100 * block},
-        }
-    )
-
 
 def measure(law: str, side: int, steps: int, repeats: int) -> dict[str, Any]:
     """Milliseconds per substep of both; the run warms up for as many steps as are then timed."""
-    run = Simulation(scene(law, side, steps), None, False)
+    run = Simulation(dry_spheres(law, side, steps), None, False)
     run.step()
     ours, theirs = [], []
     with TemporaryDirectory() as folder, lammps_session() as engine:

@@ -23,7 +23,7 @@ sys.path.append(str(ROOT / "tests" / "support"))
 
 import fluid_contacts  # noqa: E402
 from contact_step import changed, hundred  # noqa: E402
-from dry_spheres import scene as dry_spheres  # noqa: E402
+from sphere_lattice import dry_spheres  # noqa: E402
 from stages import STAGES, measured  # noqa: E402
 from written_page import measurement, write_page  # noqa: E402
 
