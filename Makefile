@@ -69,9 +69,10 @@ pages: .venv/.installed-plugins
 	$(BIN)/python docs/make_validation.py --check
 
 # The validation tests and all pages that the present sources have not made; goes on where it was stopped. Some pages
-# need DOLFINx.
+# need DOLFINx, two of these NGSolve beside it.
 validate: .venv/.installed-plugins .venv/.installed-bench
 	tools/dolfinx make
+	tools/dolfinx run pip install --quiet --editable plugins/rigidfluid-ngsolve
 	$(BIN)/python docs/make_validation.py --present
 
 # The validation tests alone, and docs/validation/tests.md.
