@@ -68,4 +68,4 @@ def _finding(design: DesignContacts, row: int, share: float, gap: float) -> Find
 
 def _deepest(design: DesignContacts) -> float:
     """Greatest overlap at which a law is evaluated [length]: no body is passed through."""
-    return min(design.law.range, min(body.bounding_radius for body in design.system.bodies))
+    return min(design.law.range, float(design.system.bounding_radii.min()))

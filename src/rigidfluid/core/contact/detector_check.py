@@ -99,7 +99,7 @@ def _refuse_contradictory(sides: tuple[_Side, _Side]) -> None:
 
 def _nearest_pairs(system: System, pose: Pose) -> list[tuple[int, int]]:
     """Pairs of surfaces whose bounding balls are nearest to each other, the nearest first."""
-    radii, found = np.array([body.bounding_radius for body in system.bodies]), dict[tuple[int, int], float]()
+    radii, found = system.bounding_radii, dict[tuple[int, int], float]()
     if len(radii) > 1:
         distance, other = nearest_others(pose.position)
         gap = distance - radii - radii[other]

@@ -40,7 +40,7 @@ def look_ahead(system: System, dynamics: BodyDynamics, size: float) -> Sight:
     law_range = system.law_range
     if system.substeps:
         return Sight(_detection(system, law_range), law_range, size)
-    largest = max(body.bounding_radius for body in system.bodies)
+    largest = float(system.bounding_radii.max())
     fastest = fastest_speed(system, dynamics, size)
     ahead = min(2.0 * fastest * size, law_range + 2.0 * largest)
     reach = law_range + ahead

@@ -76,7 +76,7 @@ def least_gaps(system: System, pose: Pose, gaps: FloatArray) -> FloatArray:
     beyond = ~np.isfinite(gaps)
     if not beyond.any():
         return gaps
-    bounds = np.array([body.bounding_radius for body in system.bodies])
+    bounds = system.bounding_radii
     free = np.maximum(broad_phase.least_gaps(pose.position, bounds, system.walls), system.reach)
     return np.where(beyond, free, gaps)
 

@@ -44,7 +44,7 @@ def representatives(system: System) -> tuple[int, ...]:
     chosen = sorted({i for kind in body_classes(system) for i in _extremes(kind, (loads.speed, *stacks))})
     if len(chosen) <= MOST:
         return tuple(chosen)
-    size = np.array([body.bounding_radius for body in system.bodies])
+    size = system.bounding_radii
     weight = np.linalg.norm(system.weight, axis=1)
     return tuple(sorted(_extremes(chosen, (system.mass, weight, size, loads.speed, *stacks))))
 

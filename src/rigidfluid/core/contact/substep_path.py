@@ -128,7 +128,7 @@ def _surface_reach(system: System) -> Reach:
     """Reach of the bodies' surface points: balls turn in their place, but not as components of a mechanism."""
     if not system.motions.names:
         return Reach(system.arms, system.rotational_factor)
-    radii = np.array([body.bounding_radius for body in system.bodies])
+    radii = system.bounding_radii
     alone = np.bincount(system.motions.carrier)[system.motions.carrier] == 1
     return Reach(np.where(alone, system.arms, radii), system.rotational_factor)
 

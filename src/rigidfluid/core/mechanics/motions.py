@@ -102,7 +102,7 @@ def own_inverse_masses(system: System, state: State) -> tuple[FloatArray, FloatA
 def reaches(system: System) -> tuple[FloatArray, FloatArray]:
     """Largest bounding radius of the bodies of each motion, and the distance of its farthest point from its centre of
     mass, (N,) each [length]."""
-    return system.motions.reaches(np.array([body.bounding_radius for body in system.bodies]))
+    return system.motions.reaches(system.bounding_radii)
 
 
 def twist_arms(system: System) -> FloatArray:
@@ -114,6 +114,5 @@ def twist_arms(system: System) -> FloatArray:
 
 def round_motions(system: System) -> BoolArray:
     """Whether a motion is that of a single ball, which turns in its place (N,)."""
-    balls = np.array([body.radius is not None for body in system.bodies])
     count = np.bincount(system.motions.carrier)
-    return np.asarray((system.motions.sums(balls) == 1) & (count == 1))
+    return np.asarray((system.motions.sums(system.balls.astype(float)) == 1) & (count == 1))

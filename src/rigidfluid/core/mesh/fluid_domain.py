@@ -48,9 +48,10 @@ class FluidDomain:
         """Distances to the nearest and to the second nearest body, each (N,), infinite where beyond ``reach``
         [length]."""
         first, second = np.full((2, len(points)), np.inf)
+        columns = np.ascontiguousarray(points.T)
         for i, body in enumerate(self.bodies):
-            from_centre = np.linalg.norm(points - self.pose.position[i], axis=1)
-            near = np.flatnonzero(from_centre - body.bounding_radius < np.minimum(reach, second))
+            square = sum((column - place) ** 2 for column, place in zip(columns, self.pose.position[i], strict=True))
+            near = np.flatnonzero(square < (np.minimum(reach, second) + body.bounding_radius) ** 2)
             distance = np.maximum(distance_to_body(self.pose, i, body, points[near]), 0.0)
             second[near] = np.minimum(second[near], np.maximum(first[near], distance))
             first[near] = np.minimum(first[near], distance)

@@ -202,7 +202,7 @@ class MeshUpdater:
         s = self._system
         for number in chain(*s.domain.periodic):
             piece, margin = s.domain.pieces[number], self._sizes.size_body
-            radius = np.array([body.bounding_radius for body in s.bodies])
+            radius = s.bounding_radii
             reaches = piece.shape.signed_distance(pose.position) <= radius + margin
             if reaches.any():
                 body = int(np.argmax(reaches))
@@ -226,7 +226,7 @@ def _refuse_to_leave(system: System, pose: Pose) -> None:
     """Reject a step in which a body comes near an end of the window."""
     if system.window is None:
         return
-    left = system.window.left_by(pose, np.array([body.bounding_radius for body in system.bodies]))
+    left = system.window.left_by(pose, system.bounding_radii)
     if left is not None:
         lower, upper = system.window.interval(pose)
         raise StepRejected(

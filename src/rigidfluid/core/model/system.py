@@ -106,10 +106,19 @@ class System:
         return self.detection_type(self)
 
     @cached_property
+    def balls(self) -> BoolArray:
+        """Whether each body is a ball (n,)."""
+        return np.array([body.radius is not None for body in self.bodies], dtype=bool)
+
+    @cached_property
+    def bounding_radii(self) -> FloatArray:
+        """Distance of the farthest surface point of each body from its centre of mass (n,) [length]."""
+        return np.array([body.bounding_radius for body in self.bodies], dtype=float)
+
+    @cached_property
     def arms(self) -> FloatArray:
-        """Distance of the farthest surface point of each body from its centre of mass, zero for balls, which turn in
-        their place (n,) [length]."""
-        return np.array([0.0 if body.radius is not None else body.bounding_radius for body in self.bodies])
+        """The same, but zero for balls, which turn in their place (n,) [length]."""
+        return np.where(self.balls, 0.0, self.bounding_radii)
 
     @cached_property
     def solved_joints(self) -> Joints:

@@ -42,7 +42,7 @@ def body_points(system: System, state: State) -> PointSet:
     numbers = np.arange(len(system.bodies))
     arrays: dict[str, FloatArray | IntArray] = {
         "id": numbers,
-        "bounding_radius": np.array([body.bounding_radius for body in system.bodies]),
+        "bounding_radius": system.bounding_radii,
         "angle" if system.dimension == 2 else "quaternion": pose.orientation,
         "velocity": twist.velocity,
         "angular_velocity": twist.angular_velocity,

@@ -137,9 +137,7 @@ def reynolds_numbers(model: Model, system: System, speeds: FloatArray) -> dict[s
     fluid = system.fluid
     if fluid is None:
         return {"reynolds_solid_density": None, "reynolds": None}
-    per_density = (
-        2.0 * np.array([body.bounding_radius for body in system.bodies]) * speeds / fluid.material.dynamic_viscosity
-    )
+    per_density = 2.0 * system.bounding_radii * speeds / fluid.material.dynamic_viscosity
     solid = np.array([body.density for body in model.all_bodies])
     return {
         "reynolds_solid_density": float(np.max(per_density * solid)),

@@ -153,7 +153,7 @@ def _reynolds_numbers(results: Results, speed: FloatArray) -> dict[str, FloatArr
     fluid = results.system.fluid
     if fluid is None:
         return {}
-    radius = np.array([body.bounding_radius for body in results.system.bodies])
+    radius = results.system.bounding_radii
     solid = np.array([body.density for body in results.model.all_bodies])
     per_density = 2.0 * radius * speed / fluid.material.dynamic_viscosity
     return {"fluid": per_density * fluid.density, "solid": per_density * solid}

@@ -132,7 +132,7 @@ def _spread(results: Results, across: FloatArray) -> tuple[FloatArray, FloatArra
 
 
 def _least_spread(results: Results) -> float:
-    return _STILL * max(body.bounding_radius for body in results.system.bodies)
+    return _STILL * float(results.system.bounding_radii.max())
 
 
 def _oriented(right: FloatArray, up: FloatArray, *, rises: bool) -> ViewPlane:

@@ -126,7 +126,7 @@ def test_friction_of_a_path_without_inertia_is_known_for_certain() -> None:
 
 
 def test_contacts_are_unsteady_where_their_impulse_is_another_than_that_of_as_long_a_step() -> None:
-    around = system(bodies=[SimpleNamespace(bounding_radius=0.2, radius=None)] * 2)
+    around = system(bounding_radii=np.full(2, 0.2))
     scheme, given = NavierStokesScheme(around), state(random(4), random(1), random(2), (random(5), random(6)))
 
     def path(impulse: FloatArray) -> Any:
@@ -139,12 +139,12 @@ def test_contacts_are_unsteady_where_their_impulse_is_another_than_that_of_as_lo
 
 def test_contacts_without_dampers_turn_no_ball() -> None:
     """And move what they touch, or what joints link."""
-    bodies = [SimpleNamespace(radius=radius, bounding_radius=0.2) for radius in (0.2, None)]
+    around: dict[str, Any] = {"bodies": [None, None], "balls": np.array([True, False])}
     near: Any = SimpleNamespace(body_a=np.array([0]), body_b=np.array([1]))
 
     def found(dissipative: bool, linked: list[bool]) -> list[int]:
         law, joints = SimpleNamespace(dissipative=dissipative), SimpleNamespace(linked=np.array(linked))
-        return _velocities(system(bodies=bodies, law=law, joints=joints), near).tolist()
+        return _velocities(system(law=law, joints=joints, **around), near).tolist()
 
     assert found(False, [False, False]) == [0, 1, 3, 4, 5]
     assert found(True, [False, False]) == [0, 1, 2, 3, 4, 5]

@@ -31,7 +31,7 @@ class Bodies:
         self.viscous = self.viscous_response(D0)
         self.evaluated: list[IntArray] = []
         self.backend = self
-        self.bodies = [SimpleNamespace(bounding_radius=RADIUS)] * count
+        self.bounding_radii = np.full(count, RADIUS)
         self.dimension = 2
         self.motions = SingleBodies(*np.zeros((3, count)), None, None)
         self.twist = np.zeros((count, WIDTH))

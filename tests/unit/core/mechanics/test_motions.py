@@ -148,10 +148,11 @@ def test_inverse_masses_are_those_of_the_energy_also_with_the_fluids(dimension: 
 @DIMENSIONS
 def test_the_farthest_point_of_a_motion_gives_its_arm(dimension: int) -> None:
     motions, bodies = carried(dimension)
-    system: Any = SimpleNamespace(motions=motions, bodies=bodies, dimension=dimension)
+    reach = np.array([body.bounding_radius for body in bodies])
+    balls = np.array([body.radius is not None for body in bodies])
+    system: Any = SimpleNamespace(motions=motions, bounding_radii=reach, balls=balls, dimension=dimension)
     arms, pose = twist_arms(system), motions.poses(motions.pose, 0.0)
     np.testing.assert_array_equal(arms[:, :dimension], 1.0)
-    reach = [body.bounding_radius for body in bodies]
     farthest = np.linalg.norm(pose.position - motions.pose.position[motions.carrier], axis=1) + reach
     expected = [farthest[:1].max(), farthest[1:3].max(), farthest[3:].max()]
     np.testing.assert_allclose(arms[:, dimension:], np.repeat(expected, arms.shape[1] - dimension).reshape(3, -1))
