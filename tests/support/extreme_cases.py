@@ -329,7 +329,7 @@ def _crowds() -> Iterator[Case]:
     at_rest = Demand("kinetic energy left", at_most=1e-3), Demand("force of the floor over the weight", 0.98, 1.02)
     yield Case("50 disks come to rest", partial(heap, 50, rough, 3.0, 2), (*damped, *at_rest))
     balls = partial(heap, 1_000, rough, 3.0)
-    yield Case("1,000 balls come to rest", balls, (*damped, *at_rest), heavy=True, fails=(Demand(grown, at_most=3e-3),))
+    yield Case("1,000 balls come to rest", balls, (*damped, *at_rest), heavy=True)
     yield Case("200 balls fly about without gravity", partial(sphere_gas, 500), keeps(1e-3))
     still = Demand("moved, in radii", at_most=0.0)
     lonely = partial(dry_scene, law("normal", 1e-9), ball((0.5, 0.5), (0, 0)), end=1.0, step=0.01)
@@ -442,8 +442,7 @@ def _wet_crowds() -> Iterator[Case]:
 def _wet_shapes() -> Iterator[Case]:
     steps = (4, 2, 1)
     yield from _in_fluid("20:1", blade, steps, steps, _by("substeps", 4, 1))
-    known = {(2.0, "implicit"): (Demand("rejected steps", at_most=1.0),)}
-    yield from _in_fluid("ellipse, tip first", contacts.ellipse, steps, steps, _by("substeps", 4), known)
+    yield from _in_fluid("ellipse, tip first", contacts.ellipse, steps, steps, _by("substeps", 4))
     yield from _in_fluid("ellipse that spins, into a corner", contacts.in_a_corner, steps, steps, _by("substeps", 4))
 
 
