@@ -41,6 +41,8 @@ def test_a_mark_of_failure_is_for_what_fails_and_gets_no_worse() -> None:
     assert _surprises(marked, 0.02) == _surprises(unmarked, 0.005) == []
     assert _surprises(marked, 0.005) == ["energy created: holds now, take it out of what fails"]
     assert _surprises(unmarked, 0.02) == ["energy created at most 0.01; found: 0.02"]
+    either_way = _case(Demand(GAINED, at_most=0.03, by_rounding=True))
+    assert _surprises(either_way, 0.02) == _surprises(either_way, 0.005) == []
     assert _surprises(marked, 0.04) == ["energy created at most 0.03 is known; found: 0.04"]
 
 

@@ -47,11 +47,13 @@ ENDS = "runs to its end"
 
 @dataclass(frozen=True, slots=True)
 class Demand:
-    """A ``figure`` of a run must be above ``above`` and at most ``at_most``."""
+    """A ``figure`` of a run must be above ``above`` and at most ``at_most``; ``by_rounding``: it is near a limit where
+    rounding decides, so that a known failure may be none."""
 
     figure: str
     above: float = -np.inf
     at_most: float = np.inf
+    by_rounding: bool = False
 
     def met_by(self, value: float) -> bool:
         """Whether the value is within the limits; what is not a number is not."""
@@ -144,7 +146,8 @@ def surprises(case: Case, found: list[Finding]) -> list[str]:
         for figure, f in failed.items()
         if figure in limits and not f.known
     ]
-    mended = [f"{figure}: holds now, take it out of what fails" for figure in limits if figure not in failed]
+    certain = [limit.figure for limit in case.fails if not limit.by_rounding]
+    mended = [f"{figure}: holds now, take it out of what fails" for figure in certain if figure not in failed]
     return new + worse + mended
 
 
@@ -396,7 +399,8 @@ def _wet_impacts() -> Iterator[Case]:
     yield from _in_fluid("spin 1e3", scene, two, two, sub(4) + imp(4))
     scene = partial(floor_hit, velocity=[0.0, -80.0], angular_velocity=[1e4])
     lost = Demand("energy lost", at_most=MOST_LOST)
-    once, thrice = (Demand("rejected steps", at_most=times) for times in (1.0, 3.0))
+    once = Demand("rejected steps", at_most=1.0, by_rounding=True)
+    thrice = Demand("rejected steps", at_most=3.0)
     known = dict.fromkeys(sub(1), (lost,)) | dict.fromkeys(imp(1), (once, lost)) | dict.fromkeys(imp(4), (thrice,))
     yield from _in_fluid("spin 1e4", scene, two, two, sub(4), known, (*STEADY, TOLD))
     scene = partial(floor_hit, detector={"detector": "narrow_band"})
