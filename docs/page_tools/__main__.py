@@ -1,5 +1,5 @@
-"""Makes one page: python -m page_tools NAME [--fresh] [--present] [--to FOLDER], with docs and tests/support on
-PYTHONPATH; to another folder, its runs are kept there too."""
+"""Makes one page: python -m page_tools NAME [--fresh] [--present] [--to FOLDER [--kept]], with docs and tests/support
+on PYTHONPATH; to another folder, its runs are kept there too, unless those of the repository are ``--kept``."""
 
 from __future__ import annotations
 
@@ -19,9 +19,10 @@ def main(*words: str) -> None:
     parser.add_argument("--fresh", action="store_true")
     parser.add_argument("--present", action="store_true")
     parser.add_argument("--to", type=Path)
+    parser.add_argument("--kept", action="store_true")
     given = parser.parse_args(words or None)
-    runs, folder = (given.to / "runs", given.to) if given.to else (RUNS, PAGES)
-    measured = folder / MEASURED.name
+    folder = given.to or PAGES
+    runs, measured = (given.to / "runs", given.to / MEASURED.name) if given.to and not given.kept else (RUNS, MEASURED)
     work = Work(given.name, fresh=given.fresh, present=given.present, runs=runs, measured=measured)
     page = import_module(f"pages.{given.name}").page(work)
     folder.mkdir(parents=True, exist_ok=True)

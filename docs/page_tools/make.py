@@ -29,6 +29,8 @@ MEASURED = {
 }
 """Pages that tell times, by what measures and writes them."""
 
+TESTS = "tests"
+"""The page of the validation tests."""
 
 WITH_DOLFINX = ("backends", "backends_study", "parallel", "settling_sphere", "ten_cate")
 """Pages that need DOLFINx."""
@@ -39,13 +41,17 @@ def pages() -> list[str]:
     return sorted([*generators(), *MEASURED])
 
 
-def make(name: str, *, fresh: bool = False, present: bool = False, folder: Path | None = None) -> bool:
-    """Make one page, in docs/validation or another ``folder``; whether it could be made."""
+def make(
+    name: str, *, fresh: bool = False, present: bool = False, folder: Path | None = None, kept: bool = False
+) -> bool:
+    """Make one page, in docs/validation or another ``folder``, where its runs are too unless those that are ``kept``
+    serve; whether it could be made."""
     if name in MEASURED:
         words = [str(ROOT / MEASURED[name]), "--page", str((folder or PAGES) / f"{name}.md")]
     else:
         words = ["-m", "page_tools", name, *["--fresh"] * fresh, *["--present"] * present]
         words += ["--to", str(folder)] if folder else []
+        words += ["--kept"] * kept
     command = [*_python(name), *words]
     print(shlex.join(command), flush=True)
     path = os.pathsep.join([*map(str, PATHS), *filter(None, [os.environ.get("PYTHONPATH")])])
@@ -54,11 +60,13 @@ def make(name: str, *, fresh: bool = False, present: bool = False, folder: Path 
 
 
 def make_several(names: list[str], **how: Any) -> dict[str, bool]:
-    """Make pages, two at a time, and those that tell times after them, alone; whether each could be made.
+    """Make pages, two at a time, then that of the tests, which take up the runs of others, and those that tell times,
+    each alone; whether each could be made.
 
     Where this is interrupted no other page is begun.
     """
-    shared, alone = ([name for name in names if (name in MEASURED) == timed] for timed in (False, True))
+    shared = [name for name in names if name != TESTS and name not in MEASURED]
+    alone = [*(name for name in names if name == TESTS), *(name for name in names if name in MEASURED)]
     pool = ThreadPoolExecutor(CORES)
     try:
         made = dict(zip(shared, pool.map(partial(make, **how), shared), strict=True))

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from page_tools.make import WITH_DOLFINX
+from page_tools.make import TESTS, WITH_DOLFINX
 from page_tools.places import RECORDS, generators
 from page_tools.record import read_record
 
 SECONDS = 2 * 40 * 60.0
 """CPU time of all [s]."""
-OTHERS = (*WITH_DOLFINX, "tests")
+OTHERS = (*WITH_DOLFINX, TESTS)
 """Pages that are not made again to be compared."""
 
 

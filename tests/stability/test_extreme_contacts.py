@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
-from extreme_cases import CASES, ENDS, Case, Demand, Finding, findings, held_against, surprises
+from extreme_cases import CASES, ENDS, Case, Demand, Finding, findings, held_against, surprises, surprises_in
 from extreme_scenes import three_disks
 from fluid_contacts import created_and_lost
+from page_tools.kept_rows import KeptRows
+from page_tools.make import make
+from page_tools.places import MEASURED
 
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import LEDGER_COLUMNS
@@ -19,17 +24,23 @@ def is_heavy(case: Case) -> bool:
     return case.heavy or (step in ("1 ms", "2 ms") and f"{stem}, Δt 4 ms" in NAMES)
 
 
-LIGHT_AND_HEAVY = [
-    pytest.param(case, id=case.name, marks=pytest.mark.validation if is_heavy(case) else pytest.mark.long)
-    for case in CASES
-]
+LIGHT = [pytest.param(case, id=case.name) for case in CASES if not is_heavy(case)]
 GAINED = "energy created"
 KNOWN = Demand(GAINED, at_most=0.03)
 
 
-@pytest.mark.parametrize("case", LIGHT_AND_HEAVY)
+@pytest.mark.long
+@pytest.mark.parametrize("case", LIGHT)
 def test_what_is_demanded_holds_but_where_it_is_known_to_fail(case: Case) -> None:
     assert surprises(case, findings(case)) == []
+
+
+@pytest.mark.validation
+@pytest.mark.timeout(0)
+def test_so_it_does_in_the_heavy_cases_of_the_page_made_again(tmp_path: Path) -> None:
+    """All cases are rows of the page on stability, which are run again where other sources have made them."""
+    assert make("stability", present=True, folder=tmp_path, kept=True)
+    assert surprises_in(KeptRows.read(MEASURED / "stability.json").rows) == {}
 
 
 def test_cases_have_names_of_their_own() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass
 from functools import partial
@@ -149,6 +149,14 @@ def surprises(case: Case, found: list[Finding]) -> list[str]:
     certain = [limit.figure for limit in case.fails if not limit.by_rounding]
     mended = [f"{figure}: holds now, take it out of what fails" for figure in certain if figure not in failed]
     return new + worse + mended
+
+
+def surprises_in(measured: Iterable[Mapping[str, Any]]) -> dict[str, list[str]]:
+    """Surprises in ``measured`` rows, by case, which have to be those of all CASES."""
+    kept = {row["case"]: [Finding(**found) for found in row["findings"]] for row in measured}
+    assert set(kept) == {case.name for case in CASES}
+    found = {case.name: surprises(case, kept[case.name]) for case in CASES}
+    return {name: those for name, those in found.items() if those}
 
 
 def rows(processes: int) -> Iterator[dict[str, Any]]:

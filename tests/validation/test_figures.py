@@ -16,6 +16,6 @@ QUOTED = sorted({quote.page for text in TEXTS for quote in quotes(text)})
 @pytest.mark.timeout(0)
 @pytest.mark.parametrize("page", QUOTED)
 def test_figures_are_those_of_the_page_made_again(page: str, tmp_path: Path) -> None:
-    assert make(page, present=True, folder=tmp_path)
+    assert make(page, present=True, folder=tmp_path, kept=True)
     told = [line for text in TEXTS for line in disagreements(text, tmp_path)]
     assert [line for line in told if f" {page}: " in line] == []

@@ -41,6 +41,7 @@ def test_all_pages_are_made_where_none_is_named(monkeypatch: pytest.MonkeyPatch)
     assert command(monkeypatch) == 0
     assert sorted(asked) == pages()
     assert {"falling_disk", "walls", "tests", "step"} <= set(asked)
+    assert asked[-len(MEASURED) - 1] == "tests"  # by the runs of others
     assert set(asked[-len(MEASURED) :]) == set(MEASURED)  # at last, alone
 
 
@@ -89,6 +90,19 @@ def test_a_page_is_made_in_a_process_of_its_own(monkeypatch: pytest.MonkeyPatch,
     assert [word.removeprefix(f"{ROOT}/") for word in command[1:]] == words
     assert environment["OMP_NUM_THREADS"] == "1"
     assert environment["PYTHONPATH"].startswith(str(ROOT / "src"))
+
+
+def test_a_page_is_written_elsewhere_from_the_runs_of_the_repository_where_these_are_wanted(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    made: list[tuple[Path, Path, Path]] = []
+    module = SimpleNamespace(page=lambda work: work)
+    monkeypatch.setattr(one_page, "import_module", lambda _: module)
+    monkeypatch.setattr(one_page, "write", lambda _, __, work, to: made.append((work.folder, work._rows, to)))
+    one_page.main("walls", "--to", str(tmp_path))
+    one_page.main("walls", "--to", str(tmp_path), "--kept")
+    own = tmp_path / "runs" / "walls", tmp_path / "measured" / "walls.json", tmp_path
+    assert made == [own, (ROOT / "out/validation/walls", ROOT / "docs/validation/measured/walls.json", tmp_path)]
 
 
 def test_a_page_that_needs_dolfinx_is_made_where_there_is_some(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict
-from pathlib import Path
 from typing import Any
 
 import pytest
-from extreme_cases import CASES, KIND, Demand, Finding, surprises
+from extreme_cases import CASES, KIND, Demand, Finding, surprises_in
+from page_tools.kept_rows import KeptRows
+from page_tools.places import MEASURED
 from pages.stability import LEAST, MOST, failures, in_full, passes, shares, worst_share
 
 LOST = Finding("energy lost", "energy lost at most 0.07", "0.14", False, share=2.0)
@@ -16,18 +16,13 @@ KEPT = Finding("energy created", "energy created at most 0.01", "0.001", True, s
 REJECTED = Finding("rejected steps", "rejected steps at most 0", "3", False)
 APART = Finding("smallest gap over the radius", "smallest gap over the radius above 0", "0.4", True)
 
-ROWS = Path(__file__).parents[3] / "docs" / "validation" / "measured" / "stability.json"
-
 
 def row(*found: Finding, fails: tuple[str, ...] = ()) -> dict[str, Any]:
     return {"kind": "fluid", "case": "a disk", "findings": list(map(asdict, found)), "fails": fails}
 
 
 def test_what_is_marked_as_a_failure_fails_in_the_measured_rows_and_nothing_else_does() -> None:
-    kept = {one["case"]: one["findings"] for one in json.loads(ROWS.read_text(encoding="utf-8"))["rows"]}
-    assert set(kept) == {case.name for case in CASES}
-    wrong = {case.name: surprises(case, [Finding(**found) for found in kept[case.name]]) for case in CASES}
-    assert {name: found for name, found in wrong.items() if found} == {}
+    assert surprises_in(KeptRows.read(MEASURED / "stability.json").rows) == {}
 
 
 def test_what_fails_is_told_with_what_is_known_of_that_figure() -> None:
