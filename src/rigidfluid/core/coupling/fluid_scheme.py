@@ -20,8 +20,6 @@ from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.fluid_step import StepEnd, step_to
 from rigidfluid.core.mechanics.motions import (
     accelerations,
-    newly_applied,
-    outer_load,
     own_inverse_masses,
     round_motions,
     twist_arms,
@@ -29,7 +27,7 @@ from rigidfluid.core.mechanics.motions import (
 from rigidfluid.core.mechanics.time_scheme import derivative_weights, predict_pose
 from rigidfluid.core.mechanics.wrenches import flat, nothing
 from rigidfluid.core.model.dynamics import BodyDynamics
-from rigidfluid.core.model.reduced_model import Coupling, ReducedModel, expected_load, load_within, uncoupled
+from rigidfluid.core.model.reduced_model import Coupling, ReducedModel, load_within, uncoupled
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, Mesh, Pose, Step
@@ -64,7 +62,7 @@ class FluidScheme(ABC):
         step = step_to(system, state, StepEnd(time + size, size, state.motions.pose, nothing(state.motions.pose)))
         known = None if state.coupling is None else state.coupling.model
         model = updated_model(system, state, step, state.contacts, flat(state.motions.twist), velocities, known)
-        before, expected = self._expected_loads(state, model)
+        before, expected = self._expected_loads(state, model, size)
         return Coupling(model, expected, before, np.zeros(len(velocities)))
 
     def follow(self, state: State, start: float, size: float, coupling: Coupling | None) -> BodyStep:
@@ -122,8 +120,8 @@ class FluidScheme(ABC):
         return self._system.motions.carry(self._motions(state, state.coupling or uncoupled()), time)
 
     @abstractmethod
-    def _expected_loads(self, state: State, model: ReducedModel) -> tuple[FloatArray, FloatArray]:
-        """Load Φ (c,) at the start of a step, NaN where unknown, and at its end."""
+    def _expected_loads(self, state: State, model: ReducedModel, size: float) -> tuple[FloatArray, FloatArray]:
+        """Load Φ (c,) at the start of a step of this ``size`` [time], NaN where unknown, and at its end."""
 
     @abstractmethod
     def _known_load(self, state: State, coupling: Coupling) -> FloatArray | None:
@@ -168,14 +166,14 @@ class FluidScheme(ABC):
         twist, velocities = flat(candidate.motions.twist), used.model.velocities
         model = updated_model(self._system, state, step, candidate.contacts, twist, velocities, used.model)
         past = state.past_twist or state.motions.twist
-        twists = tuple(components(model, flat(twist)) for twist in (candidate.motions.twist, state.motions.twist, past))
+        twists = tuple(model.components(flat(twist)) for twist in (candidate.motions.twist, state.motions.twist, past))
         before = (flat(state.motions.contact) + _applied(state)) * (state.past_step or 0.0)
         applied = _applied(candidate)
-        impulses = components(model, step.impulse + (candidate.past_step or 0.0) * applied), components(model, before)
+        impulses = model.components(step.impulse + (candidate.past_step or 0.0) * applied), model.components(before)
         load = load_within(model, step.derivative, (twists[0], twists[1], twists[2]), impulses) - used.correction
-        load = load + components(model, applied)
-        load = load - components(model, candidate.link.wrench)
-        missed = components(model, flat(path.motions.twist)) - twists[0]
+        load = load + model.components(applied)
+        load = load - model.components(candidate.link.wrench)
+        missed = model.components(flat(path.motions.twist)) - twists[0]
         return Coupling(model, load, used.load_before, used.correction + self._correction(model, step, missed))
 
     def _agree(self, used: Coupling, found: Coupling, path: BodyStep, state: State, candidate: State) -> bool:
@@ -183,13 +181,13 @@ class FluidScheme(ABC):
         model, size = found.model, (candidate.past_step or 0.0)
         if len(model.velocities) == 0:
             return True
-        impulse, d0 = components(model, flat(path.motions.contact)), float(derivative_weights(size, state.past_step)[0])
+        impulse, d0 = model.components(flat(path.motions.contact)), float(derivative_weights(size, state.past_step)[0])
         gained = self._response(model, d0, impulse)
-        before, after = (components(model, flat(twist)) for twist in (state.motions.twist, candidate.motions.twist))
+        before, after = (model.components(flat(twist)) for twist in (state.motions.twist, candidate.motions.twist))
         by_load = size * (self._response(model, d0, found.load) - self._response(used.model, d0, used.load))
         by_response = gained - self._response(used.model, d0, impulse)
         missed = model.response(d0, found.correction - used.correction) / d0
-        arm = components(model, twist_arms(self._system))
+        arm = model.components(twist_arms(self._system))
         scale = max(float(np.linalg.norm(arm * each)) for each in (before, after, gained))
         enough = CONVERGED_SHARED if model.shared else CONVERGED
         return max(float(np.linalg.norm(arm * each)) for each in (by_load, by_response, missed)) <= enough * scale
@@ -213,39 +211,8 @@ def _velocities(system: System, near: Contacts) -> IntArray:
     return np.flatnonzero(moves)
 
 
-def load_before(system: System, state: State, model: ReducedModel) -> FloatArray:
-    """Load Φ (c,) at the start of a step: that at the end of the one before, less R (Uⁿ - Uⁿ⁻¹), since drag counts from
-    the velocities at the start of a step; NaN where unknown."""
-    before = np.full(len(model.velocities), np.nan)
-    if state.coupling is None or state.past is None:
-        return before
-    latest = state.coupling.model.velocities
-    _, here, there = np.intersect1d(model.velocities, latest, return_indices=True)
-    change = flat(state.motions.twist) - flat(state.past.twist)
-    slowed = state.coupling.model.friction_times(components(state.coupling.model, change))
-    added = components(model, flat(newly_applied(system, state)))
-    before[here] = (state.coupling.load - slowed)[there] + added[here]
-    return before
-
-
-def expected_load_of(system: System, state: State, model: ReducedModel) -> FloatArray:
-    """Load Φ (c,) expected at the end of a step: as in the latest one, or weight and applied wrenches in the first."""
-    if state.past is None:
-        return components(model, flat(outer_load(system, state)))
-    change = components(model, flat(state.motions.twist) - flat(state.past.twist))
-    pushed = flat(state.motions.contact) + state.link.wrench
-    impulse = components(model, pushed) * state.past.step
-    applied = components(model, flat(newly_applied(system, state)))
-    return expected_load(model, change, impulse, state.past.step) + applied
-
-
 def _applied(state: State) -> FloatArray:
     """Mean applied wrench on the motions (N, d+k) in the step that led to a ``state``."""
     if state.past is None or state.past.applied is None:
         return np.zeros_like(flat(state.motions.contact))
     return flat(state.past.applied)
-
-
-def components(model: ReducedModel, field: FloatArray) -> FloatArray:
-    """Components (c,) that the model has of a ``field`` (N, d+k) of the motions."""
-    return np.asarray(field.ravel()[model.velocities])

@@ -10,7 +10,8 @@ from rigidfluid.core.contact.body_step import BodyStep
 from rigidfluid.core.contact.contact_load import contact_load
 from rigidfluid.core.contact.substep_path import SubstepPath
 from rigidfluid.core.coupling.convection import turning
-from rigidfluid.core.coupling.fluid_scheme import FluidScheme, expected_load_of, load_before
+from rigidfluid.core.coupling.expected_load import expected_load_of, load_before
+from rigidfluid.core.coupling.fluid_scheme import FluidScheme
 from rigidfluid.core.coupling.stirring import impact_tick
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.mechanics.wrenches import flat
@@ -35,8 +36,8 @@ class NavierStokesScheme(FluidScheme):
         level, ledger = max(state.level or 0, first_level), replace(state.ledger, since_start=0.0)
         return replace(state, level=level, ledger=ledger)
 
-    def _expected_loads(self, state: State, model: ReducedModel) -> tuple[FloatArray, FloatArray]:
-        return load_before(self._system, state, model), expected_load_of(self._system, state, model)
+    def _expected_loads(self, state: State, model: ReducedModel, size: float) -> tuple[FloatArray, FloatArray]:
+        return load_before(self._system, state, model), expected_load_of(self._system, state, model, size)
 
     def _known_load(self, state: State, coupling: Coupling) -> None:
         return None

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from rigidfluid.core.contact.body_step import BodyStep
-from rigidfluid.core.coupling.fluid_scheme import FluidScheme, components, load_before
+from rigidfluid.core.coupling.expected_load import load_before
+from rigidfluid.core.coupling.fluid_scheme import FluidScheme
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.mechanics.motions import outer_load
 from rigidfluid.core.mechanics.wrenches import flat
@@ -24,16 +25,16 @@ class StokesScheme(FluidScheme):
         """The state, and a short step next."""
         return replace(state, level=max(state.level or 0, first_level))
 
-    def _expected_loads(self, state: State, model: ReducedModel) -> tuple[FloatArray, FloatArray]:
+    def _expected_loads(self, state: State, model: ReducedModel, size: float) -> tuple[FloatArray, FloatArray]:
         """Load at the start, for both ends; where that is unknown, the fluid's present wrench and all outer ones."""
         before = load_before(self._system, state, model)
-        now = components(model, flat(outer_load(self._system, state)) + flat(state.motions.hydrodynamic))
+        now = model.components(flat(outer_load(self._system, state)) + flat(state.motions.hydrodynamic))
         load = np.where(np.isnan(before), now, before)
         return load, load
 
     def _known_load(self, state: State, coupling: Coupling) -> FloatArray:
         """Weight and applied wrenches."""
-        return components(coupling.model, flat(outer_load(self._system, state)))
+        return coupling.model.components(flat(outer_load(self._system, state)))
 
     def _varying(self, state: State, bodies: BodyDynamics, near: Contacts, size: float) -> BoolArray:
         """All, in all steps."""

@@ -45,6 +45,10 @@ class ReducedModel:
         """M⁻¹ = X Xᵀ, (c, c) [1/mass]."""
         return self.modes @ self.modes.T
 
+    def components(self, field: FloatArray) -> FloatArray:
+        """Components (c,) that the model has of a ``field`` (N, d+k) of the motions."""
+        return np.asarray(field.ravel()[self.velocities])
+
     def mass_times(self, velocity: FloatArray) -> FloatArray:
         """M U for U (c,)."""
         inverse = np.linalg.inv(self.modes)

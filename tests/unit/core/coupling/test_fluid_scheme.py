@@ -12,7 +12,8 @@ from linked_bodies import masses, placed, split
 
 from rigidfluid.core.contact.body_step import undisturbed
 from rigidfluid.core.coupling import fluid_scheme
-from rigidfluid.core.coupling.fluid_scheme import _velocities, expected_load_of, load_before
+from rigidfluid.core.coupling.expected_load import expected_load_of, load_before
+from rigidfluid.core.coupling.fluid_scheme import _velocities
 from rigidfluid.core.coupling.navier_stokes_scheme import NavierStokesScheme
 from rigidfluid.core.coupling.stokes_scheme import StokesScheme
 from rigidfluid.core.geometry.arrays import FloatArray
@@ -67,8 +68,27 @@ def test_the_load_that_is_expected_has_moved_the_bodies_in_the_step_before() -> 
     change = np.zeros((2, 3))
     change.flat[VELOCITIES] = STEP * known.inverse_mass @ (load + pushed)
     given = state(change, contact, link, (random(5), random(6)))
-    found = expected_load_of(system(), given, known)
+    found = expected_load_of(system(), given, known, STEP)
     np.testing.assert_allclose(found, load + (random(6) - random(5)).ravel()[VELOCITIES])
+
+
+def test_a_load_that_grows_slowly_is_expected_to_go_on() -> None:
+    """By as much in each time as in the step before; the one that grew fast is not."""
+    known, change, none = model(), np.zeros((2, 3)), (np.zeros((2, 3)), np.zeros((2, 3)))
+    given = state(change, np.zeros((2, 3)), np.zeros((2, 3)), none)
+    load, growth = np.array([1.0, -2.0, 3.0]), np.array([0.05, 0.15, -0.5])
+    given.coupling = Coupling(known, load, load - growth, np.zeros(3))
+    found = expected_load_of(system(), given, known, 0.5 * STEP)
+    np.testing.assert_allclose(found, [1.0 + 0.025, -2.0 + 0.075, 3.0 - 0.25])
+    found = expected_load_of(system(), given, known, STEP)
+    np.testing.assert_allclose(found, [1.0 + 0.05, -2.0 + 0.15, 0.0], atol=1e-12)
+
+
+def test_a_load_that_was_not_known_does_not_grow() -> None:
+    known, none = model(), (np.zeros((2, 3)), np.zeros((2, 3)))
+    given = state(np.zeros((2, 3)), np.zeros((2, 3)), np.zeros((2, 3)), none)
+    given.coupling = Coupling(known, np.ones(3), np.full(3, np.nan), np.zeros(3))
+    np.testing.assert_array_equal(expected_load_of(system(), given, known, STEP), 0.0)
 
 
 def test_the_load_that_a_solution_shows_has_moved_the_bodies_in_its_step(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -109,7 +129,7 @@ def test_drag_that_has_slowed_a_body_is_no_load_of_the_next_step() -> None:
     friction = inverse.T @ np.diag(known.decay) @ inverse
     expected = load - friction @ change.ravel()[VELOCITIES] + (random(6) - random(5)).ravel()[VELOCITIES]
     np.testing.assert_allclose(load_before(system(), given, known), expected)
-    np.testing.assert_allclose(StokesScheme(system())._expected_loads(given, known), [expected, expected])
+    np.testing.assert_allclose(StokesScheme(system())._expected_loads(given, known, STEP), [expected, expected])
 
 
 def test_without_inertia_what_was_missed_is_what_the_correction_adds() -> None:
