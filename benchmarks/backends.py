@@ -29,6 +29,7 @@ from rigidfluid.core.run.process import one_openblas_thread, peak_memory
 from rigidfluid.errors import RigidfluidError
 from rigidfluid.registry import FLUID_BACKEND, Registry
 
+ROOT = Path(__file__).resolve().parents[1]
 SMALLEST = min(MESHES)  # thousands of unknowns: compiles, not reported
 BACKENDS = ("scikit-fem", "ngsolve", "dolfinx")
 SHARED = ("dolfinx",)  # as many ranks as cores; the others as many threads
@@ -215,8 +216,13 @@ def main() -> None:
     if arguments.json:
         arguments.json.write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
     if arguments.page:
-        found["command"] = " ".join(["python benchmarks/backends.py", *sys.argv[1:]])
+        found["command"] = told_command(sys.argv[1:])
         write(arguments.page, measurement(arguments.page, found)["rows"])
+
+
+def told_command(words: Sequence[str]) -> str:
+    """The command with these words as one types it in the repository, wherever that lies."""
+    return " ".join(["python benchmarks/backends.py", *(word.removeprefix(f"{ROOT}/") for word in words)])
 
 
 def write(file: Path, found: Mapping[str, Any], *, kept: bool = False) -> None:

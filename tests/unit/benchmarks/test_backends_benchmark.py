@@ -25,6 +25,12 @@ def test_there_is_no_exponent_of_one_size_or_of_nothing(backends):
     assert backends.exponent([100, 200], [0.0, 0.0]) is None
 
 
+def test_the_command_is_told_as_one_types_it_in_the_repository(backends):
+    page = str(backends.ROOT / "docs/validation/backends.md")
+    told = backends.told_command(["--steps", "5", "--page", page])
+    assert told == "python benchmarks/backends.py --steps 5 --page docs/validation/backends.md"
+
+
 def row(backends, unknowns, seconds):
     stages = dict.fromkeys(backends.STAGES, 0.0) | {"iterate": seconds / 2, "the rest": seconds / 2}
     counts = {"iterations": 1.75, "factorisations": 1, "memory": 3 * 2**20}
