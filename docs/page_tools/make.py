@@ -66,7 +66,7 @@ def make_several(names: list[str], **how: Any) -> dict[str, bool]:
     Where this is interrupted no other page is begun.
     """
     shared = [name for name in names if name != TESTS and name not in MEASURED]
-    alone = [*(name for name in names if name == TESTS), *(name for name in names if name in MEASURED)]
+    alone = sorted((name for name in names if name not in shared), key=MEASURED.__contains__)
     pool = ThreadPoolExecutor(CORES)
     try:
         made = dict(zip(shared, pool.map(partial(make, **how), shared), strict=True))

@@ -32,7 +32,7 @@ def run_time_findings(size: RunSize, system: System, time: TimeTable) -> Iterato
     speed = machine_speed()
     of_cell, contact = _MESH_SECONDS[system.dimension], 0.0
     if system.law is not None:
-        contact = _CONTACT_SECONDS[all(body.radius is not None for body in system.bodies)]
+        contact = _CONTACT_SECONDS[bool(system.balls.all())]
     parts = zip(_SPREAD, (size.start, size.most), (size.start_cost, size.most_cost), strict=True)
     least, most = (
         share * (steps * cost.step_seconds + size.meshes * (of_cell * count.cells + cost.seconds)) / speed

@@ -10,7 +10,7 @@ from rigidfluid.core.contact.body_step import BodyStep
 from rigidfluid.core.contact.contact_load import contact_load
 from rigidfluid.core.contact.substep_path import SubstepPath
 from rigidfluid.core.coupling.convection import turning
-from rigidfluid.core.coupling.expected_load import expected_load_of, load_before
+from rigidfluid.core.coupling.expected_load import expected_load, load_before
 from rigidfluid.core.coupling.fluid_scheme import FluidScheme
 from rigidfluid.core.coupling.stirring import impact_tick
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
@@ -37,7 +37,8 @@ class NavierStokesScheme(FluidScheme):
         return replace(state, level=level, ledger=ledger)
 
     def _expected_loads(self, state: State, model: ReducedModel, size: float) -> tuple[FloatArray, FloatArray]:
-        return load_before(self._system, state, model), expected_load_of(self._system, state, model, size)
+        before = load_before(self._system, state, model)
+        return before, expected_load(self._system, state, model, before, size)
 
     def _known_load(self, state: State, coupling: Coupling) -> None:
         return None

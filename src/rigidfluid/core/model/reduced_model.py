@@ -140,9 +140,9 @@ def load_within(
     return np.asarray(inertia + model.friction_times(new - now) - d0 * impulses[0] + d2 * impulses[1])
 
 
-def expected_load(model: ReducedModel, change: FloatArray, impulse: FloatArray, step: float) -> FloatArray:
-    """Load Φ ≈ [M (Uⁿ - Uⁿ⁻¹) - Jⁿ]/Δt - R (Uⁿ - Uⁿ⁻¹)/2 (c,) as it was in the latest ``step`` Δt, before there is a
-    better one [force | force·length].
+def mean_load(model: ReducedModel, change: FloatArray, impulse: FloatArray, step: float) -> FloatArray:
+    """Load Φ ≈ [M (Uⁿ - Uⁿ⁻¹) - Jⁿ]/Δt - R (Uⁿ - Uⁿ⁻¹)/2 (c,) in the mean of the latest ``step`` Δt [force |
+    force·length].
 
     ``change`` (c,): Uⁿ - Uⁿ⁻¹; ``impulse`` (c,): Jⁿ, which contacts gave then.
     """

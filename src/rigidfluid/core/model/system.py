@@ -117,7 +117,7 @@ class System:
 
     @cached_property
     def arms(self) -> FloatArray:
-        """The same, but zero for balls, which turn in their place (n,) [length]."""
+        """Bounding radii, but zero for balls, which turn in their place (n,) [length]."""
         return np.where(self.balls, 0.0, self.bounding_radii)
 
     @cached_property

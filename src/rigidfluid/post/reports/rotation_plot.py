@@ -29,7 +29,7 @@ def turned(results: Results) -> FloatArray:
 def turning(results: Results) -> BoolArray:
     """Which bodies (n,) have their rotation shown: those that turn, and others that are no balls if any does."""
     far = np.abs(turned(results)).max(axis=0) >= _TURNED
-    no_balls = np.array([body.radius is None for body in results.system.bodies])
+    no_balls = ~results.system.balls
     return np.asarray((far | no_balls) & far.any())
 
 

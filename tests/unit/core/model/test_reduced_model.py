@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.model.reduced_model import Evaluation, ReducedModel, expected_load, load_within, reduced_model
+from rigidfluid.core.model.reduced_model import Evaluation, ReducedModel, load_within, mean_load, reduced_model
 
 D0, COUNT = 750.0, 5
 
@@ -84,13 +84,13 @@ def test_the_load_is_that_of_the_scheme():
     np.testing.assert_allclose(found, load, atol=1e-9 * np.abs(MASS @ now).max() * D0)
 
 
-def test_the_expected_load_of_a_constant_force_and_drag():
+def test_the_mean_load_of_a_constant_force_and_drag():
     """M dU/dt = G - R U + contacts by the trapezoidal rule: in the next step Φ = G - R Uⁿ."""
     force, past, impulse = np.random.default_rng(5).normal(size=(3, COUNT))
     step = 2e-3
     right = MASS @ past + impulse + step * (force - 0.5 * FRICTION @ past)
     now = np.linalg.solve(MASS + 0.5 * step * FRICTION, right)
-    found = expected_load(MODEL, now - past, impulse, step)
+    found = mean_load(MODEL, now - past, impulse, step)
     np.testing.assert_allclose(found, force - FRICTION @ now, atol=1e-10 * np.abs(FRICTION @ now).max())
 
 
