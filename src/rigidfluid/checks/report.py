@@ -92,7 +92,7 @@ def check(case: Case) -> Report:
         model = model_of(case)
         system = assemble(model)
         start = initial_contacts(system.domain, model.exact_detector, system.bodies, system.pose, gap_reach(system))
-        spot_check(system, system.pose, None)
+        spot_check(system, system.pose, None, 0)
         found = sorted(findings(model, system, start), key=lambda finding: GRADES.index(finding.grade))
         rows = tuple(features(system, model.fluid.mesh)), tuple(_rows(system, start))
         return Report(model.name, domain_row(model), *rows, tuple(found))

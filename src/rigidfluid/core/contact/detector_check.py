@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.contact.broad_phase import nearest_others
+from rigidfluid.core.contact.broad_phase import near_pairs, nearest_others
 from rigidfluid.core.contact.proximity import detect
-from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.geometry.guarded import part_error
 from rigidfluid.core.geometry.surface import Surface
 from rigidfluid.core.geometry.wrong import Wrong
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import Mesh, Pose
+from rigidfluid.core.model.types import Contacts, Mesh, Pose
 
 MOST_PAIRS = 3
-"""Largest number of pairs that are looked at, those that seem nearest."""
+"""Largest number of pairs that are looked at of those that seem nearest, and of those that were not found."""
 
 _SAMPLES = 100
 """Points tried on the surface of a body."""
@@ -57,22 +58,38 @@ class _Side(NamedTuple):
         return np.asarray(self.position + self.shape.sample_surface(_SAMPLES) @ self.rotation.T)
 
 
-def check_detector(system: System, pose: Pose, mesh: Mesh | None) -> None:
-    """Raise PluginError unless the detector finds the nearest pairs at a ``pose``, with points on both surfaces, and
-    none farther apart than two points of a naive search; on a ``mesh`` as far as facets lie off the surfaces."""
-    exact = system.detection.on_mesh or system.detector.exact_for(system.bodies, system.domain.pieces)
-    for pair in _nearest_pairs(system, pose):
-        error = (_ROUNDING if exact else _ROUGH) * system.bodies[pair[0]].bounding_radius
-        a, b = (_side(system, pose, mesh, number, error) for number in pair)
+def check_detector(system: System, pose: Pose, mesh: Mesh | None, count: int) -> None:
+    """Raise PluginError unless the detector finds the nearest pairs at a ``pose``, all balls in reach, and some other
+    pairs, drawn by ``count``; with points on both surfaces, and none farther apart than two points of a naive search;
+    on a ``mesh`` as far as facets lie off the surfaces, and the nearest only, as others may be hidden behind them."""
+    exact = system.detection.on_mesh or bool(system.detector.exact_for(system.bodies, system.domain.pieces))
+    pairs = _nearest_pairs(system, pose)
+    if not system.detection.on_mesh:
+        pairs += _pairs_not_found(system, pose, exact, count)
+    looked_at = list(_searched_pairs(system, pose, mesh, pairs, _ROUNDING if exact else _ROUGH))
+    if looked_at:
+        found = detect(system, pose, mesh, max(reach for _, _, reach in looked_at))
+        for a, b, reach in looked_at:
+            _compare(system, found, (a, b), reach)
+
+
+def _searched_pairs(
+    system: System, pose: Pose, mesh: Mesh | None, pairs: Sequence[tuple[int, int]], error: float
+) -> Iterator[tuple[_Side, _Side, float]]:
+    """Both sides of pairs, and the gap at most at which a detector of a relative ``error`` has to find them; on a mesh
+    without those that its reach leaves out."""
+    for pair in pairs:
+        off = error * system.bodies[pair[0]].bounding_radius
+        a, b = (_side(system, pose, mesh, number, off) for number in pair)
         apart = _searched(a, b)
         reach = apart + a.off + b.off
-        if apart > 0.0 and (reach <= system.reach or not system.detection.on_mesh):
-            _compare(system, pose, mesh, (a, b), reach)
+        if (apart > 0.0 and reach <= system.reach) or not system.detection.on_mesh:
+            yield a, b, reach
 
 
-def _compare(system: System, pose: Pose, mesh: Mesh | None, sides: tuple[_Side, _Side], reach: float) -> None:
-    found, (a, b) = detect(system, pose, mesh, reach), sides
-    rows = np.flatnonzero((found.body_a == a.number) & (found.body_b == b.number))
+def _compare(system: System, found: Contacts, sides: tuple[_Side, _Side], reach: float) -> None:
+    a, b = sides
+    rows = np.flatnonzero((found.body_a == a.number) & (found.body_b == b.number) & (found.gap <= reach))
     names = f"{system.surfaces[a.number]} and {system.surfaces[b.number]}"
     if len(rows) == 0:
         _refuse_contradictory(sides)
@@ -109,6 +126,36 @@ def _nearest_pairs(system: System, pose: Pose) -> list[tuple[int, int]]:
         gap = wall.shape.signed_distance(pose.position) - radii
         found[int(np.argmin(gap)), wall.surface] = float(gap.min())
     return sorted(found, key=lambda pair: found[pair])[:MOST_PAIRS]
+
+
+def _pairs_not_found(system: System, pose: Pose, exact: bool, count: int) -> list[tuple[int, int]]:
+    """Pairs whose bounding balls are in reach of each other and that the detector did not find: first those of round
+    surfaces, which it had to find, then others, drawn by ``count``."""
+    first, second = _in_reach(system, pose, exact)
+    found = detect(system, pose, None, system.reach)
+    numbers = len(system.surfaces)
+    missed = np.flatnonzero(~np.isin(first * numbers + second, found.body_a * numbers + found.body_b))
+    missed = np.random.default_rng(count).permutation(missed)
+    round_first = missed[np.argsort(~_both_round(system, first[missed], second[missed]), kind="stable")]
+    return [(int(first[pair]), int(second[pair])) for pair in round_first[:MOST_PAIRS]]
+
+
+def _in_reach(system: System, pose: Pose, exact: bool) -> tuple[IntArray, IntArray]:
+    """Numbers of bodies and of other bodies or walls whose bounding balls are in the detector's reach (m,) each."""
+    radii = system.bounding_radii
+    reach = system.reach - (_ROUNDING if exact else _ROUGH) * float(radii.max(initial=0.0))
+    pairs = [near_pairs(pose.position, radii, reach)]
+    for wall in system.walls:
+        near = np.flatnonzero(wall.shape.signed_distance(pose.position) - radii <= reach)
+        pairs.append((near, np.full_like(near, wall.surface)))
+    first, second = (np.concatenate(numbers) for numbers in zip(*pairs, strict=True))
+    return first, second
+
+
+def _both_round(system: System, first: IntArray, second: IntArray) -> BoolArray:
+    """Whether bodies are balls, and what they are near balls or walls (m,) each: what is in reach is then known."""
+    ball = np.append(system.balls, True)
+    return np.asarray(ball[first] & ball[np.minimum(second, len(system.bodies))])
 
 
 def _side(system: System, pose: Pose, mesh: Mesh | None, number: int, error: float) -> _Side:

@@ -7,9 +7,9 @@ from rigidfluid.core.contact.law_check import check_laws
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Mesh, Pose
 
-_EARLY = {1, 4, 16, 64}
-_EVERY = 256
-"""Numbers of steps after which parts are checked: a check takes about as long as a dry step of two bodies."""
+_EARLY = {1, 2, 4, 8, 16, 32, 64}
+_EVERY = 128
+"""Numbers of steps after which parts are checked: a check takes about as long as a dry step of few bodies."""
 
 
 def is_due(count: int) -> bool:
@@ -18,9 +18,9 @@ def is_due(count: int) -> bool:
     return count in _EARLY or count % _EVERY == 0
 
 
-def spot_check(system: System, pose: Pose, mesh: Mesh | None) -> None:
-    """Raise PluginError where the laws or the detector, if it has the ``mesh`` that it needs, are not what they should
-    be."""
+def spot_check(system: System, pose: Pose, mesh: Mesh | None, count: int) -> None:
+    """Raise PluginError where the laws are not what they should be, or after ``count`` steps the detector, if it has
+    the ``mesh`` that it needs."""
     check_laws(system)
     if mesh is not None or not system.detection.on_mesh:
-        check_detector(system, pose, mesh)
+        check_detector(system, pose, mesh, count)

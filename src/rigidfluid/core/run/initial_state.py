@@ -25,7 +25,7 @@ def initial_state(system: System, mesh_updater: Updater, clock: Clock, starts_sh
     PluginError where a detector or law is not what it should be."""
     zero = nothing(system.pose)
     mesh = mesh_updater.first_mesh()
-    spot_check(system, system.pose, mesh)
+    spot_check(system, system.pose, mesh, 0)
     contacts, gaps = detect_contacts_and_gaps(system, system.pose, mesh)
     motions = system.motions
     stored = stored_energy(system, contacts, motions.pose, 0.0)

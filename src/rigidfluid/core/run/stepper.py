@@ -111,7 +111,7 @@ class Stepper:
             else:
                 self.counts.unsettled += not agreed
                 if is_due(new.count):
-                    spot_check(self.system, new.pose, new.mesh)
+                    spot_check(self.system, new.pose, new.mesh, new.count)
                 return with_cause(self.system, self._clock, state, new)
 
     def _judged(self, state: State, candidate: State) -> State:
