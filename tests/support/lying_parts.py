@@ -198,7 +198,11 @@ POSE: dict[str, Change] = (
 )
 CHANGES: dict[tuple[Kind[Any], type[Part], str], dict[str, Change]] = {
     (FORCE_LAW, Springy, "force"): ROWS
-    | {"half": lambda answer: 0.5 * answer, "askew": lambda answer: answer[:, ::-1] + 1.0},
+    | {
+        "half": lambda answer: 0.5 * answer,
+        "askew": lambda answer: answer[:, ::-1] + 1.0,
+        "across": lambda answer: answer + 0.1 * answer[:, ::-1] * [-1.0, 1.0],
+    },
     (FORCE_LAW, Springy, "energy"): ROWS
     | {"negative": lambda answer: -answer, "constant": lambda answer: 0.0 * answer},
     (FORCE_LAW, Springy, "stiffness"): ROWS

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.contact.broad_phase import near_pairs, nearest_others
+from rigidfluid.core.contact.broad_phase import near_pairs
 from rigidfluid.core.contact.proximity import detect
-from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.geometry.guarded import part_error
 from rigidfluid.core.geometry.surface import Surface
 from rigidfluid.core.geometry.wrong import Wrong
@@ -35,6 +35,15 @@ _FAR = 1e-9
 
 _ROUGH = 0.1
 """The same of one that does not say that it is exact."""
+
+
+class _Near(NamedTuple):
+    """Pairs by their numbers, of a body and of another or a wall (m,), and gaps of their bounding balls (m,) [length],
+    which are those of balls."""
+
+    first: IntArray
+    second: IntArray
+    gap: FloatArray
 
 
 class _Side(NamedTuple):
@@ -63,10 +72,13 @@ def check_detector(system: System, pose: Pose, mesh: Mesh | None, count: int) ->
     pairs, drawn by ``count``; with points on both surfaces, and none farther apart than two points of a naive search;
     on a ``mesh`` as far as facets lie off the surfaces, and the nearest only, as others may be hidden behind them."""
     exact = system.detection.on_mesh or bool(system.detector.exact_for(system.bodies, system.domain.pieces))
-    pairs = _nearest_pairs(system, pose)
+    error = _ROUNDING if exact else _ROUGH
+    near = _in_reach(system, pose)
+    rows = np.argsort(near.gap, kind="stable")[:MOST_PAIRS]
     if not system.detection.on_mesh:
-        pairs += _pairs_not_found(system, pose, exact, count)
-    looked_at = list(_searched_pairs(system, pose, mesh, pairs, _ROUNDING if exact else _ROUGH))
+        rows = np.append(rows, _not_found(system, pose, near, error, count))
+    pairs = list(zip(near.first[rows].tolist(), near.second[rows].tolist(), strict=True))
+    looked_at = list(_searched_pairs(system, pose, mesh, pairs, error))
     if looked_at:
         found = detect(system, pose, mesh, max(reach for _, _, reach in looked_at))
         for a, b, reach in looked_at:
@@ -114,48 +126,29 @@ def _refuse_contradictory(sides: tuple[_Side, _Side]) -> None:
                 raise part_error(side.shape, "sample_surface", wrong)
 
 
-def _nearest_pairs(system: System, pose: Pose) -> list[tuple[int, int]]:
-    """Pairs of surfaces whose bounding balls are nearest to each other, the nearest first."""
-    radii, found = system.bounding_radii, dict[tuple[int, int], float]()
-    if len(radii) > 1:
-        distance, other = nearest_others(pose.position)
-        gap = distance - radii - radii[other]
-        for a in np.argsort(gap)[: 2 * MOST_PAIRS].tolist():  # a pair comes twice
-            found[min(a, int(other[a])), max(a, int(other[a]))] = float(gap[a])
+def _in_reach(system: System, pose: Pose) -> _Near:
+    """Pairs whose bounding balls are in the detector's reach of each other."""
+    position, radii = pose.position, system.bounding_radii
+    a, b = near_pairs(position, radii, system.reach)
+    pairs = [(a, b, np.linalg.norm(position[a] - position[b], axis=1) - radii[a] - radii[b])]
     for wall in system.walls:
-        gap = wall.shape.signed_distance(pose.position) - radii
-        found[int(np.argmin(gap)), wall.surface] = float(gap.min())
-    return sorted(found, key=lambda pair: found[pair])[:MOST_PAIRS]
+        gap = wall.shape.signed_distance(position) - radii
+        a = np.flatnonzero(gap <= system.reach)
+        pairs.append((a, np.full_like(a, wall.surface), gap[a]))
+    return _Near(*(np.concatenate(columns) for columns in zip(*pairs, strict=True)))
 
 
-def _pairs_not_found(system: System, pose: Pose, exact: bool, count: int) -> list[tuple[int, int]]:
-    """Pairs whose bounding balls are in reach of each other and that the detector did not find: first those of round
-    surfaces, which it had to find, then others, drawn by ``count``."""
-    first, second = _in_reach(system, pose, exact)
+def _not_found(system: System, pose: Pose, near: _Near, error: float, count: int) -> IntArray:
+    """Rows of pairs that the detector did not find: first those of round surfaces, which it had to find, then others,
+    drawn by ``count``."""
     found = detect(system, pose, None, system.reach)
     numbers = len(system.surfaces)
-    missed = np.flatnonzero(~np.isin(first * numbers + second, found.body_a * numbers + found.body_b))
-    missed = np.random.default_rng(count).permutation(missed)
-    round_first = missed[np.argsort(~_both_round(system, first[missed], second[missed]), kind="stable")]
-    return [(int(first[pair]), int(second[pair])) for pair in round_first[:MOST_PAIRS]]
-
-
-def _in_reach(system: System, pose: Pose, exact: bool) -> tuple[IntArray, IntArray]:
-    """Numbers of bodies and of other bodies or walls whose bounding balls are in the detector's reach (m,) each."""
-    radii = system.bounding_radii
-    reach = system.reach - (_ROUNDING if exact else _ROUGH) * float(radii.max(initial=0.0))
-    pairs = [near_pairs(pose.position, radii, reach)]
-    for wall in system.walls:
-        near = np.flatnonzero(wall.shape.signed_distance(pose.position) - radii <= reach)
-        pairs.append((near, np.full_like(near, wall.surface)))
-    first, second = (np.concatenate(numbers) for numbers in zip(*pairs, strict=True))
-    return first, second
-
-
-def _both_round(system: System, first: IntArray, second: IntArray) -> BoolArray:
-    """Whether bodies are balls, and what they are near balls or walls (m,) each: what is in reach is then known."""
+    is_found = np.isin(near.first * numbers + near.second, found.body_a * numbers + found.body_b)
+    within = near.gap <= system.reach - error * system.bounding_radii.max(initial=0.0)
+    missed = np.random.default_rng(count).permutation(np.flatnonzero(within & ~is_found))
     ball = np.append(system.balls, True)
-    return np.asarray(ball[first] & ball[np.minimum(second, len(system.bodies))])
+    both_round = ball[near.first] & ball[np.minimum(near.second, len(system.bodies))]
+    return np.asarray(missed[np.argsort(~both_round[missed], kind="stable")][:MOST_PAIRS])
 
 
 def _side(system: System, pose: Pose, mesh: Mesh | None, number: int, error: float) -> _Side:

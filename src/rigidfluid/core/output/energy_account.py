@@ -6,8 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
+import numpy as np
+
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.output.energy_flows import (
+    COLUMNS,
     PARTS,
     Flow,
     Table,
@@ -17,6 +20,7 @@ from rigidfluid.core.output.energy_flows import (
     lost_energy,
     round_off,
 )
+from rigidfluid.errors import OutputError
 
 NOTICEABLE, SERIOUS = 0.01, 0.05
 """Shares of the energy at hand from which on energy created, lost or unaccounted for is worth a warning, and a serious
@@ -102,7 +106,9 @@ class EnergyWarning:
 
 
 def energy_account(energy: Table) -> EnergyAccount:
-    """The account of a table of energies by column, (s,) each [energy], a row per state from the start on."""
+    """The account of a table of energies by column, (s,) each [energy], a row per state from the start on; raises
+    OutputError where one is no number."""
+    _refuse_gaps(energy)
     put_in, at_hand = _put_in(energy), energy_at_hand(energy)
     lost, friction = lost_energy(energy), energy["path_friction"]
     whole = max(put_in, at_hand)
@@ -147,6 +153,14 @@ def per_cent(share: float) -> str:
     """Percentage to two digits; a share below a millionth is nothing."""
     value = 100.0 * share if abs(share) >= 1e-6 else 0.0
     return f"{value:.2g} %" if abs(value) < 100.0 else f"{value:.0f} %"
+
+
+def _refuse_gaps(energy: Table) -> None:
+    for name in (*COLUMNS, *PARTS):
+        gaps = np.flatnonzero(~np.isfinite(energy[name]))
+        if len(gaps):
+            found = f"{energy[name][gaps[0]]} at the time {energy['time'][gaps[0]]:.6g}"
+            raise OutputError(f"energy.csv, {name}", found, "finite energies", "Run the scene again.")
 
 
 def _put_in(energy: Table) -> float:

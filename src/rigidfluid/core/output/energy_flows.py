@@ -17,12 +17,15 @@ Table = Mapping[str, NDArray[Any]]
 PARTS = ("residual_steps", "residual_contacts", "residual_remeshing", "residual_mesh", "residual_start")
 """Columns whose sum is the residual."""
 
-SHORTEST = 10.0
-"""Least length of a stretch, in steps that dissipate as much as any. A creeping flow would be judged by less than a
+_SHORTEST = 10.0
+"""Least length of a stretch, in longest steps, where most is dissipated. A creeping flow would be judged by less than a
 step: it dissipates at once what is there, and remembers no error."""
 
 _DISSIPATED = ("dissipation", "grad_div_loss", "contact_loss")
 _BALANCE = ("kinetic", "contact", "gravity", "boundary", "control", "body_force", *_DISSIPATED, "transfer_loss")
+COLUMNS = (*_BALANCE, "path_friction", "residual")
+"""All other columns."""
+
 _ROUND_OFF = 8.0 * float(np.finfo(float).eps)
 """Relative error of a sum of the columns of the balance, and of the clock of stretches."""
 
@@ -62,18 +65,15 @@ def creation_and_loss(energy: Table, at_hand: float) -> tuple[Flow, Flow]:
 
 
 def energy_at_hand(energy: Table) -> float:
-    """The most energy that was there at once [energy]: kinetic, in contacts and springs, attraction counted from its
-    lowest, and what gravity can still do; as far as the balance accounts for it.
+    """The most energy that was there at once [energy]: kinetic, and in contacts and springs, attraction counted from
+    its lowest; as far as the balance accounts for it.
 
-    It is no less than ten times what the step that dissipates most takes, or in a run of few steps all that is
-    dissipated.
+    It is no less than the most that is dissipated in ten times the longest step. The work that gravity can still do is
+    not there: in a viscous fluid it flows through, the more the longer the fall.
     """
-    above_lowest = energy["contact"] - min(energy["contact"].min(), 0.0)
-    stored = energy["kinetic"] + above_lowest + energy["gravity"].max() - energy["gravity"]
+    stored = energy["kinetic"] + energy["contact"] - min(energy["contact"].min(), 0.0)
     accounted = stored + lost_energy(energy)
-    dissipated = _dissipated(energy)
-    steps = SHORTEST * float(np.diff(dissipated).max(initial=0.0))
-    found = max(float(np.minimum(stored, accounted).max()), min(steps, float(dissipated[-1])))
+    found = max(float(np.minimum(stored, accounted).max()), _most_dissipated(energy))
     return found if found > round_off(energy) else float(np.maximum(stored, accounted).max())
 
 
@@ -110,6 +110,13 @@ def _changes(values: FloatArray, floor: float) -> FloatArray:
     """Changes of a sum (s,) in the step to each state, zero where they are no more than the ``floor``."""
     change = np.diff(values, prepend=values[:1])
     return np.where(np.abs(change) > floor, change, 0.0)
+
+
+def _most_dissipated(energy: Table) -> float:
+    """The most that is dissipated in ten times the longest step [energy]."""
+    time, dissipated = energy["time"], _dissipated(energy)
+    span = _SHORTEST * float(np.diff(time).max(initial=0.0)) + _ROUND_OFF * abs(float(time[-1]))
+    return float((dissipated - dissipated[np.searchsorted(time, time - span)]).max())
 
 
 def _dissipated(energy: Table) -> FloatArray:

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 from dry_scenes import ball, dry_scene
 
 import rigidfluid
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.contact.detector_check import MOST_PAIRS, check_detector
+from rigidfluid.core.geometry.arrays import BoolArray
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interfaces import Detector
 from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import Contacts
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.assemble import assemble
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
@@ -27,20 +30,31 @@ PAIRS = 6
 """Number of pairs, each nearer than the one before: the first are never among the nearest."""
 
 
+Change = Callable[[Contacts], Contacts]
+
+
 @contextmanager
-def blind(detector: type[Detector], *pair: int, after: int = 0) -> Iterator[None]:
-    """A detector that does not find the contacts of two surfaces, once it has been asked so often."""
+def lying(detector: type[Detector], change: Change, after: int = 0) -> Iterator[None]:
+    """A detector whose answers change, once it has been asked so often."""
     honest, asked = detector.detect, [0]
 
     def detect(self: Any, *given: Any) -> Any:
         found = honest(self, *given)
         asked[0] += 1
-        missed = (found.body_a == min(pair)) & (found.body_b == max(pair)) & (asked[0] > after)
-        return select(found, ~missed)
+        return change(found) if asked[0] > after else found
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(detector, "detect", detect)
         yield
+
+
+def blind(detector: type[Detector], *pair: int, after: int = 0) -> AbstractContextManager[None]:
+    """A detector that does not find the contacts of two surfaces, once it has been asked so often."""
+    return lying(detector, lambda found: select(found, ~between(found, *pair)), after)
+
+
+def between(found: Contacts, a: int, b: int) -> BoolArray:
+    return (found.body_a == a) & (found.body_b == b)
 
 
 def pairs_of(table: Callable[[list[float], list[float]], dict[str, Any]], contact: dict[str, Any]) -> Scene:
@@ -79,13 +93,10 @@ def test_a_pair_of_balls_that_is_not_among_the_nearest() -> None:
 def test_a_ball_at_a_wall_that_is_not_among_the_nearest() -> None:
     near = [ball([0.105 + 0.001 * place, 0.25 + 0.3 * place], [0.0, 0.0]) for place in range(PAIRS)]
     scene = dry_scene(CONTACT, *near, end=0.03, step=1e-4, upper=[1.0, 0.3 * PAIRS + 0.2])
-    system = assembled(scene)
+    system = replace(assembled(scene), reach=0.05)
     wall = system.surfaces.index("left")
     told = f"no contact of body{PAIRS - 1} and left"
-    with (
-        blind(SphereDetector, PAIRS - 1, wall),
-        pytest.raises(PluginError, match=told),
-    ):
+    with blind(SphereDetector, PAIRS - 1, wall), pytest.raises(PluginError, match=told):
         check_detector(system, system.pose, None, 0)
 
 
@@ -107,6 +118,89 @@ def test_balls_that_overlap_have_a_contact() -> None:
 def test_pairs_of_other_shapes_are_drawn_until_the_one_is_found() -> None:
     with blind(EllipsoidDetector, 0, 1), pytest.raises(PluginError, match="no contact of body0 and body1"):
         rigidfluid.run(ELLIPSES)
+
+
+def slender(position: list[float]) -> dict[str, Any]:
+    return ellipse(position, [0.0, 0.0]) | {"semi_axes": [0.1, 0.02]}
+
+
+def hedge(*others: dict[str, Any]) -> Scene:
+    """Slender ellipses beside each other, in reach by their bounding balls and not by their gaps; and others."""
+    upright = [slender([0.3 + 0.45 * row, 0.2 + 0.15 * place]) for row in range(2) for place in range(12)]
+    contact = CONTACT | {"law": "contact", "detector": "ellipsoid"}
+    return dry_scene(contact, *upright, *others, end=0.0128, step=1e-4, upper=[1.4, 2.5])
+
+
+def is_caught(system: System, count: int) -> bool:
+    try:
+        check_detector(system, system.pose, None, count)
+    except PluginError:
+        return True
+    return False
+
+
+def caught(scene: Scene, *pair: int) -> list[bool]:
+    """Whether a detector that is blind for a pair is caught, in each of many checks."""
+    system = replace(assembled(scene), reach=0.05)
+    with blind(EllipsoidDetector, *pair):
+        return [is_caught(system, count) for count in range(40)]
+
+
+def test_among_many_pairs_that_are_out_of_reach_one_is_drawn_at_times() -> None:
+    near = [slender([0.3 + 0.22 * place, 2.2]) for place in range(5)]
+    told = caught(hedge(*near), 24, 25)
+    assert 0.03 < np.mean(told) < 0.5
+
+
+def test_checks_of_a_run_draw_different_pairs() -> None:
+    near = [slender([0.3 + 0.22 * place, 2.2]) for place in range(5)]
+    scene = hedge(*near, *(slender([0.15 + 0.3 * place, 2.35]) for place in range(4)))
+    assert len(model_of(scene).bodies) > 30, "fewer are all in reach"
+    with blind(EllipsoidDetector, 26, 27), pytest.raises(PluginError, match="no contact of body26 and body27"):
+        rigidfluid.run(scene)
+
+
+def test_balls_among_other_shapes_come_first() -> None:
+    others = [slender([0.3 + 0.205 * place, 2.2]) for place in range(4)]
+    balls = [ball([1.25, 0.5], [0.0, 0.0], radius=0.05), ball([1.25, 0.62], [0.0, 0.0], radius=0.05)]
+    assert all(caught(hedge(*others, *balls), 28, 29))
+
+
+def turned_away(found: Contacts, angle: float) -> Contacts:
+    """Contacts of the first two balls, one above the other, at other points of both, which are farther apart."""
+    rows = between(found, 0, 1)
+    away = found.radius_a[rows, None] * np.array([np.sin(angle), 1.0 - np.cos(angle)])
+    point_a, point_b = found.point_a.copy(), found.point_b.copy()
+    point_a[rows] += away * [1.0, -1.0]
+    point_b[rows] += away
+    apart = point_a - point_b
+    gap = np.where(rows, np.linalg.norm(apart, axis=1), found.gap)
+    normal = np.where(rows[:, None], apart / gap[:, None], found.normal)
+    return replace(found, point_a=point_a, point_b=point_b, gap=gap, normal=normal)
+
+
+@pytest.mark.parametrize("angle", [0.05, 0.1])
+def test_points_that_are_not_the_nearest(angle: float) -> None:
+    """Those of the nearest two balls, which are larger than others, are on both surfaces and farther apart."""
+    large = [ball([0.3, y], [0.0, 0.0], radius=0.2) for y in (0.25, 0.655)]
+    small = [ball([x, 0.2 + 0.2 * pair], [0.0, 0.0], radius=0.05) for pair in range(4) for x in (0.6, 0.71)]
+    system = assembled(dry_scene(CONTACT, *large, *small, end=0.03, step=1e-4))
+    check_detector(system, system.pose, None, 0)
+    told = "no contact of body0 and body1; allowed is one with a gap of 0.005"
+    with lying(SphereDetector, lambda found: turned_away(found, angle)), pytest.raises(PluginError, match=told):
+        check_detector(system, system.pose, None, 0)
+
+
+def test_points_that_are_not_on_the_surfaces() -> None:
+    """Both moved along the normal, so that they are as far apart as before."""
+
+    def moved(found: Contacts) -> Contacts:
+        by = 1e-3 * found.normal
+        return replace(found, point_a=found.point_a + by, point_b=found.point_b + by)
+
+    system = assembled(BALLS)
+    with lying(SphereDetector, moved), pytest.raises(PluginError, match=r"0\.001 off body"):
+        check_detector(system, system.pose, None, 0)
 
 
 def test_honest_detectors_pass() -> None:

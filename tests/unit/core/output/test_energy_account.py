@@ -50,8 +50,25 @@ def test_what_is_put_in():
         gravity=[0, 3, 4, 1, -1, -5],
         boundary=[0, 1, 2, 3, 4, 5],
         control=[0, 1, 4, 1, 0, -3],
+        body_force=[0, 0, 2, 0, 0, 0],
     )
-    assert energy_account(energy).put_in == 1.0 + 2.0 + 4.0 + 6.0
+    assert energy_account(energy).put_in == 1.0 + 2.0 + 4.0 + 8.0
+
+
+def test_where_little_was_put_in_shares_are_those_of_what_was_at_hand():
+    """Bodies that attract each other speed up, and a tenth of it vanishes."""
+    energy = table(kinetic=[0, 1, 2, 4, 4.5, 4.5], contact=[0, -1, -2, -4, -5, -5])
+    account = energy_account(energy)
+    assert (account.put_in, account.at_hand) == (0.0, 5.0)
+    assert account.unaccounted == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(("taken", "told"), [(0.4, 0), (0.6, 1)])
+def test_much_that_stabilisation_takes_is_told(taken, told):
+    warnings = warned(table(kinetic=after_blow(-taken), grad_div_loss=after_blow(taken, 0)))
+    assert [warning.text for warning in warnings] == [
+        "6 % of the energy put in was taken by stabilisation, in cells too coarse for the flow"
+    ] * told
 
 
 @pytest.mark.parametrize("states", [1, 2, 6])

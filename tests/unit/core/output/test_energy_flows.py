@@ -10,6 +10,7 @@ from made_up_energy import table, warned
 
 from rigidfluid.core.output.energy_account import energy_account
 from rigidfluid.core.output.energy_flows import largest_growth
+from rigidfluid.errors import OutputError
 
 ERROR = 0.3
 
@@ -49,6 +50,13 @@ def test_all_rises_and_falls_are_summed_by_cause():
     assert {name: value for name, value in creation.by_cause.items() if value} == pytest.approx({"residual_start": 0.5})
     assert (loss.summed, creation.summed) == pytest.approx((0.5, 0.5))
     assert loss.largest == pytest.approx(0.4)
+
+
+@pytest.mark.parametrize(("change", "sums"), [(-0.3, (0.0, 0.1)), (0.3, (0.3, 0.0))])
+def test_friction_of_impacts_is_taken_off_the_sum_of_losses_alone(change, sums):
+    friction = 0.2 * (np.arange(6) > 2)
+    account = energy_account(table(kinetic=step_at(3, 6, change), path_friction=friction))
+    assert (account.creation.summed, account.loss.summed) == pytest.approx(sums)
 
 
 @pytest.mark.parametrize("state", [1, 25, 50])
@@ -130,18 +138,46 @@ def test_the_largest_growth_is_that_of_all_pairs():
 
 
 def test_what_is_at_hand():
-    """Thrown up with 1 by a spring that holds 2, to where gravity can do 3 more than at the start."""
+    """Thrown up with 1 by a spring that holds 2, and falling on beyond the start through a thick fluid."""
     thrown = table(
-        kinetic=[1, 0, 0, 1, 1, 1],
+        kinetic=[1, 0, 0, 1, 1, 0.5],
         contact=[2, 2, 0, 0, 0, 0],
-        gravity=[0, -1, -3, -1, 1, 3],
-        dissipation=[0, 0, 0, 1, 3, 5],
+        gravity=[0, -1, -3, -1, -0.5, -0.5],
+        dissipation=[0, 0, 0, 1, 1.5, 2],
     )
     assert np.abs(thrown["residual"]).max() == 0.0
-    assert energy_account(thrown).at_hand == 1.0 + 2.0 + 3.0
+    assert energy_account(thrown).at_hand == 1.0 + 2.0
     assert energy_account(table(kinetic=np.ones(6), contact=np.full(6, 3.0))).at_hand == 1.0 + 3.0
     attracted = table(kinetic=[0, 1, 2, 3, 4, 5], contact=[-1, -2, -3, -4, -5, -6])
     assert energy_account(attracted).at_hand == 5.0
+
+
+@pytest.mark.parametrize("way", ["gravity", "boundary", "control", "body_force"])
+def test_a_longer_way_does_not_make_an_error_small(way):
+    """A steady fall, or drive, in which the same energy vanishes once."""
+    for lengths in (1, 2, 4):
+        passed = 0.5 * np.arange(50 * lengths + 1)
+        lost = ERROR * (passed > 5.0)
+        energy = table(len(passed), **{way: passed}, dissipation=passed - lost)
+        assert shares(energy) == pytest.approx((0.0, 0.03))
+
+
+def test_a_burst_of_dissipation_is_as_much_as_it_is():
+    """It took 20 at once, as from a jump of a face: what comes from nowhere later is told against no more."""
+    for states in (20, 200):
+        burst = 20.0 * (np.arange(states) > 0)
+        energy = table(states, kinetic=1.0 + 0.5 * (np.arange(states) > 15), boundary=burst, dissipation=burst)
+        assert energy_account(energy).at_hand == 20.0
+        assert shares(energy)[0] == pytest.approx(0.5 / 20.0)
+
+
+@pytest.mark.parametrize("column", ["kinetic", "residual_start", "path_friction"])
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_a_table_with_gaps_is_named(column, value):
+    energy = table()
+    energy[column][3] = value
+    with pytest.raises(OutputError, match=rf"energy.csv, {column}: found {value} at the time 0.3; allowed is finite"):
+        energy_account(energy)
 
 
 @pytest.mark.parametrize("taker", ["dissipation", "grad_div_loss", "contact_loss"])
