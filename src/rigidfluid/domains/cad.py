@@ -191,7 +191,7 @@ def probe_cad(path: Path, dimension: int) -> None:
     shape, unit = _read(CadOptions(file=str(path)), dimension)
     for side in sides(shape, dimension):
         (form_of_edge(side, unit) if dimension == 2 else form_of_face(side.surf, unit), side.mass, side.center)
-    _fine_facets(shape, dimension, unit)
+    (_fine_facets(shape, dimension, unit), shape.mass)
 
 
 def _scaled(shape: Any, factor: float) -> Any:

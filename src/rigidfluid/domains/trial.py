@@ -3,18 +3,22 @@ never end.
 
     python -m rigidfluid.domains.trial KIND FILE DIMENSION BYTES
 
-reads a file as ``cad`` or as a ``mesh``, with at most so much memory; exit code 3 if that is too little.
+reads a file as ``cad`` or as a ``mesh``, with at most so much memory; exit code 3 if that is too little, and 4 if the
+file is refused: why is then the only output.
 """
 
 from __future__ import annotations
 
+import json
+import os
 import signal
 import subprocess
 import sys
 from functools import lru_cache
 from pathlib import Path
-from typing import Literal
+from typing import Literal, cast
 
+from rigidfluid.core.model.memory import available_memory
 from rigidfluid.errors import SceneError
 from rigidfluid.python_process import ONE_THREAD, environment, python
 
@@ -24,61 +28,84 @@ SECONDS = 120.0
 """Time in which a file has to be read [s]."""
 
 _MEMORY, _PER_BYTE = 1 << 31, 500
-"""Memory that a trial may take [byte], and for each byte of the file."""
+"""Memory that a trial may take [byte], and for each byte of the file, unless less is available."""
 
-_TOO_LITTLE = 3
+_TOO_LITTLE, _REFUSED = 3, 4
+
+_ALLOWED = "a whole file of that kind"
+
+Refusal = tuple[str, str, str, str]
+"""Parts of a SceneError: subject, found, allowed, remedy."""
 
 
 def require_survival(kind: Kind, path: Path, dimension: int) -> None:
-    """Raise SceneError where a process that reads this file does not come to an end of its own; a file that it refuses
-    by an exception will be refused here in the same way."""
+    """Raise SceneError unless a process of its own has read this file; what fails there is never tried here."""
     stat = path.stat()
-    reason = _outcome(kind, path, dimension, stat.st_size, stat.st_mtime_ns)
-    if reason:
-        remedy = "Write it again, or from another program."
-        raise SceneError("domain.file", f"{path}, whose reading {reason}", "a whole file of that kind", remedy)
+    refusal = _outcome(kind, path, dimension, stat.st_size, stat.st_mtime_ns)
+    if refusal:
+        raise SceneError(*refusal)
 
 
 @lru_cache(maxsize=64)
-def _outcome(kind: Kind, path: Path, dimension: int, size: int, _changed: int) -> str:
-    """End of a trial in words, empty where it was a good one."""
-    most = _MEMORY + _PER_BYTE * size
-    command = python("-m", "rigidfluid.domains.trial", kind, str(path), str(dimension), str(most))
+def _outcome(kind: Kind, path: Path, dimension: int, size: int, _changed: int) -> Refusal | None:
+    """Refusal of a file by its trial, None where it was read."""
+    most = int(max(_MEMORY, min(_MEMORY + _PER_BYTE * size, available_memory())))
+    command = python("-W", "ignore", "-m", "rigidfluid.domains.trial", kind, str(path), str(dimension), str(most))
     try:
         ended = subprocess.run(
             command,
             timeout=SECONDS,
             check=False,
-            stdout=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             env=environment() | ONE_THREAD,  # each thread would take some of the memory that is allowed
         )
     except subprocess.TimeoutExpired:
-        return f"took more than {SECONDS:g} seconds"
-    if ended.returncode < 0:
-        return f"ended the process that tried it ({signal.strsignal(-ended.returncode)})"
-    return f"took more than {most / 2**30:.1f} GiB" if ended.returncode == _TOO_LITTLE else ""
+        return _bad_end(path, f"took more than {SECONDS:g} seconds")
+    code = ended.returncode
+    if code == 0:
+        return None
+    if code == _REFUSED:
+        return cast("Refusal", tuple(json.loads(ended.stdout)))
+    if code == _TOO_LITTLE:
+        return _bad_end(path, f"took more than {most / 2**30:.1f} GiB")
+    how = signal.strsignal(-code) if code < 0 else f"exit code {code}"
+    return _bad_end(path, f"ended the process that tried it ({how})")
+
+
+def _bad_end(path: Path, how: str) -> Refusal:
+    return "domain.file", f"{path}, whose reading {how}", _ALLOWED, "Write it again, or from another program."
 
 
 def main(kind: Kind, path: str, dimension: str, most: str) -> int:
-    """Read a file; 3 where memory is not enough."""
+    """Read a file; 3 where memory is not enough, 4 where the file is refused."""
     from rigidfluid.domains.cad import probe_cad
     from rigidfluid.domains.mesh_file import read_untried
 
+    answer = os.dup(1)
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # readers print too
+    _limit_memory(int(most))
+    try:
+        (probe_cad if kind == "cad" else read_untried)(Path(path), int(dimension))
+    except MemoryError:
+        return _TOO_LITTLE
+    except SceneError as error:
+        refusal = (error.subject, str(error.found), str(error.allowed), error.remedy)
+    except (Exception, SystemExit) as error:  # whatever a damaged file leads to; words of a reader may quote it
+        refusal = _bad_end(Path(path), f"failed ({type(error).__name__})")
+    else:
+        return 0
+    os.write(answer, json.dumps(refusal).encode())
+    return _REFUSED
+
+
+def _limit_memory(most: int) -> None:
     if sys.platform != "win32":
         import resource
 
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         hard = resource.getrlimit(resource.RLIMIT_AS)[1]
-        limit = int(most) if hard == resource.RLIM_INFINITY else min(int(most), hard)
-        resource.setrlimit(resource.RLIMIT_AS, (limit, hard))
-    try:
-        (probe_cad if kind == "cad" else read_untried)(Path(path), int(dimension))
-    except MemoryError:
-        return _TOO_LITTLE
-    except SceneError:  # told by the process that is to use the file
-        return 0
-    return 0
+        resource.setrlimit(resource.RLIMIT_AS, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ import pytest
 import rigidfluid
 from rigidfluid.core.geometry.stl_file import read_stl
 from rigidfluid.core.nested.rows import read_rows
-from rigidfluid.domains import trial
+from rigidfluid.domains import cad, mesh_file, trial
 from rigidfluid.domains.cad import Cad, CadOptions
 from rigidfluid.domains.mesh import MeshDomain, MeshOptions
 from rigidfluid.errors import SceneError
@@ -63,6 +63,42 @@ def test_a_whole_drawing_is_tried_once(drawn: Path, monkeypatch: pytest.MonkeyPa
     for _ in range(2):
         assert Cad(CadOptions(file=str(drawn), faces={"wall": (1, 2, 3)}), 3).volume == pytest.approx(12.566370614)
     assert len(tried) == 1
+
+
+def _read_again(*_: Any) -> Any:
+    raise AssertionError("tried a second time")
+
+
+def test_a_drawing_that_fails_its_reader_is_not_tried_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A circle without end, which meshing would follow for ever."""
+    from netgen import occ
+
+    path = tmp_path / "disk.brep"
+    occ.Circle((0.0, 0.0), 1.0).Face().WriteBrep(str(path))
+    path.write_text(path.read_text().replace("6.28318530717959", "nan"))
+    monkeypatch.setattr(cad, "_read", _read_again)
+    with pytest.raises(SceneError, match=r"domain.file: found .*disk.brep, whose reading failed \(PluginError\)"):
+        Cad(CadOptions(file=str(path), faces={"wall": 1}), 2)
+
+
+def test_a_mesh_that_is_refused_by_its_trial_is_not_tried_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "mesh.vol"
+    path.write_text("mesh3d\ndimension\n2\nendmesh\n")
+    monkeypatch.setattr(mesh_file, "read_untried", _read_again)
+    with pytest.raises(SceneError, match=r"domain.file: found .*mesh.vol with 0 points in 2 dimensions; allowed is"):
+        MeshDomain(MeshOptions(file=str(path)), 3)
+
+
+@pytest.mark.parametrize("code", [1, 7, -11])
+def test_only_a_trial_that_succeeds_lets_a_file_through(
+    drawn: Path, monkeypatch: pytest.MonkeyPatch, code: int
+) -> None:
+    monkeypatch.setattr(trial.subprocess, "run", lambda *_, **__: subprocess.CompletedProcess([], code, b""))
+    monkeypatch.setattr(cad, "_read", _read_again)
+    with pytest.raises(SceneError, match=r"ended the process that tried it \((exit code \d|Segmentation)"):
+        Cad(CadOptions(file=str(drawn), faces={"wall": (1, 2, 3)}), 3)
 
 
 @pytest.mark.long
