@@ -79,24 +79,31 @@ def _bad_end(path: Path, how: str) -> Refusal:
 
 def main(kind: Kind, path: str, dimension: str, most: str) -> int:
     """Read a file; 3 where memory is not enough, 4 where the file is refused."""
-    from rigidfluid.domains.cad import probe_cad
-    from rigidfluid.domains.mesh_file import read_untried
-
     answer = os.dup(1)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # readers print too
     _limit_memory(int(most))
     try:
-        (probe_cad if kind == "cad" else read_untried)(Path(path), int(dimension))
+        _read(kind, Path(path), int(dimension))
     except MemoryError:
         return _TOO_LITTLE
     except SceneError as error:
-        refusal = (error.subject, str(error.found), str(error.allowed), error.remedy)
-    except (Exception, SystemExit) as error:  # whatever a damaged file leads to; words of a reader may quote it
-        refusal = _bad_end(Path(path), f"failed ({type(error).__name__})")
-    else:
-        return 0
-    os.write(answer, json.dumps(refusal).encode())
-    return _REFUSED
+        refusal = error.subject, str(error.found), str(error.allowed), error.remedy
+        os.write(answer, json.dumps(refusal).encode())
+        return _REFUSED
+    return 0
+
+
+def _read(kind: Kind, path: Path, dimension: int) -> None:
+    """Read a file; raises SceneError, or MemoryError."""
+    from rigidfluid.domains.cad import probe_cad
+    from rigidfluid.domains.mesh_file import read_untried
+
+    try:
+        (probe_cad if kind == "cad" else read_untried)(path, dimension)
+    except (SceneError, MemoryError):
+        raise
+    except (Exception, SystemExit) as error:  # anything, from a damaged file; its words may quote the file
+        raise SceneError(*_bad_end(path, f"failed ({type(error).__name__})")) from error
 
 
 def _limit_memory(most: int) -> None:
