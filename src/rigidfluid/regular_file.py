@@ -11,7 +11,7 @@ MOST_TEXT, MOST_GEOMETRY = 1 << 26, 1 << 31
 """Largest size of a scene or a table, and of a file of geometry [byte]."""
 
 
-def require_regular(path: Path, key: str, most: int, allowed: str = "a file that is there") -> None:
+def require_regular(path: Path, key: str, most: float, allowed: str = "a file that is there") -> None:
     """Raise SceneError, which names the ``key``, where a path is not one that is ``allowed``, no regular file, or has
     more than ``most`` bytes."""
     try:

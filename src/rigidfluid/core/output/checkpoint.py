@@ -22,6 +22,7 @@ from rigidfluid.core.model.ranks import ALONE, Ranks
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.types import FluidState
 from rigidfluid.core.output.extremes import Extremes
+from rigidfluid.core.output.result_file import require_result
 from rigidfluid.core.output.sealed_file import BLOCK, is_intact, is_sealed, seal
 from rigidfluid.core.output.tables import Prefix
 from rigidfluid.errors import OutputError
@@ -101,8 +102,9 @@ def read_scene(path: Path) -> dict[str, Any]:
 @contextmanager
 def _opened(path: Path) -> Iterator[h5py.File]:
     """A checkpoint, of whose bytes each is as it was written."""
-    if not path.is_file():
+    if not path.exists():
         raise OutputError(str(path), "no such file", "the checkpoint of an earlier run", "Run without --resume.")
+    require_result(path)
     data, remedy = path.read_bytes(), "Run without --resume."
     if not is_sealed(data):
         raise OutputError(str(path), "no checkpoint of this version", f"one of format {FORMAT}", remedy)

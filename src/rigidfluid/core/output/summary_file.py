@@ -7,11 +7,13 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from rigidfluid.core.output.result_file import require_result
 from rigidfluid.errors import OutputError
 
 
 def read_summary(path: Path, needed: Iterable[str] = ("scene", "status")) -> dict[str, Any]:
     """Read a summary that has the ``needed`` keys; raises OutputError where there is none or it cannot be read."""
+    require_result(path)
     try:
         summary = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:

@@ -6,7 +6,8 @@ import csv
 import io
 import os
 from array import array
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from sys import intern
@@ -17,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidfluid.core.output.records import Row
+from rigidfluid.core.output.result_file import require_result
 from rigidfluid.errors import OutputError
 
 _CHUNK = 1 << 20
@@ -48,7 +50,7 @@ class Prefix:
     def _found(self, path: Path) -> str:
         """Difference of a file from it in words, empty where there is none."""
         if not path.is_file():
-            return "no such file"
+            return "no regular file" if path.exists() else "no such file"
         with path.open("rb") as file:
             present = Prefix()
             while data := file.read(min(_CHUNK, self.length - present.length)):
@@ -107,24 +109,22 @@ def table_path(folder: Path, name: str) -> Path:
 def read_rows(path: Path, *, complete: bool = True) -> list[Row]:
     """Read the rows of a table on disk, numbers as numbers; raises ValueError where one is not. A last line that is cut
     off is dropped if the table need not be ``complete``."""
-    with path.open(newline="", encoding="utf-8") as file:
-        reader = csv.reader(line for line in file if complete or line.endswith("\n"))
-        names = next(reader, [])
+    with _reader(path, complete) as reader:
+        names: list[str] = next(reader, [])
         return [tuple(_value(name, text) for name, text in zip(names, row, strict=False)) for row in reader]
 
 
 def read_header(path: Path) -> list[str]:
     """The columns' names."""
-    with path.open(newline="", encoding="utf-8") as file:
-        return next(csv.reader(file), [])
+    with _reader(path, complete=True) as reader:
+        return next(reader, [])
 
 
 def read_columns(path: Path, wanted: Sequence[str], *, complete: bool = True) -> dict[str, NDArray[Any]]:
     """Columns of a table on disk as arrays, with no more of it held meanwhile; raises ValueError as read_rows does, and
     drops a last line as it does."""
-    with path.open(newline="", encoding="utf-8") as file:
-        reader = csv.reader(line for line in file if complete or line.endswith("\n"))
-        names = next(reader, [])
+    with _reader(path, complete) as reader:
+        names: list[str] = next(reader, [])
         columns = [(name, names.index(name), _empty(name)) for name in wanted]
         for row in reader:
             if len(row) < len(names):
@@ -132,6 +132,17 @@ def read_columns(path: Path, wanted: Sequence[str], *, complete: bool = True) ->
             for name, place, values in columns:
                 values.append(_value(name, row[place]))
         return {name: np.array(values) for name, _, values in columns}
+
+
+@contextmanager
+def _reader(path: Path, complete: bool) -> Iterator[Any]:
+    """The lines of a table, split; raises ValueError where they are of no table."""
+    require_result(path)
+    with path.open(newline="", encoding="utf-8") as file:
+        try:
+            yield csv.reader(line for line in file if complete or line.endswith("\n"))
+        except csv.Error as error:
+            raise ValueError(str(error)) from None
 
 
 def _empty(name: str) -> Any:

@@ -19,6 +19,7 @@ from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.model.types import Fields
 from rigidfluid.core.output.cell_gradients import nodal_vorticity
 from rigidfluid.core.output.disk import replace_text
+from rigidfluid.core.output.result_file import require_result
 from rigidfluid.errors import OutputError
 
 FLUID, BODIES, CONTACTS = DATASETS = "fluid", "bodies", "contacts"
@@ -152,6 +153,7 @@ def _joined(pieces: Sequence[Fields]) -> Fields:
 @contextmanager
 def _reading(path: Path) -> Iterator[None]:
     """Turn what is wrong with a file into an OutputError that names it."""
+    require_result(path)
     try:
         yield
     except (OSError, ET.ParseError, KeyError, ValueError) as error:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from rigidfluid.core.model.ranks import ALONE
 from rigidfluid.core.output.disk import writing
+from rigidfluid.core.output.result_file import require_result
 from rigidfluid.core.output.tables import table_path
 from rigidfluid.core.output.writer import earlier_run
 from rigidfluid.core.scene.earlier import tables_now
@@ -82,11 +83,13 @@ def _can_resume(scene: Scene, folder: Path) -> bool:
 
 def _time_reached(folder: Path) -> float:
     """Time in the last whole row of the table with one row a step; 0 before there is one."""
+    path = table_path(folder, "energy")
     try:
-        with (folder / "energy.csv").open("rb") as table:
+        require_result(path)
+        with path.open("rb") as table:
             table.seek(max(0, table.seek(0, SEEK_END) - _TAIL))
             rows = table.read().rpartition(b"\n")[0].splitlines()
-    except OSError:
+    except (OSError, OutputError):
         return 0.0
     last = rows[-1].partition(b",")[0] if rows else b"time"
     return 0.0 if last == b"time" else float(last)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,7 +17,7 @@ from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import Row, columns, joint_coordinates, moving, quantity_columns
 from rigidfluid.core.output.run_document import read_document
 from rigidfluid.core.output.summary_file import unreadable
-from rigidfluid.core.output.tables import KINDS, read_rows, table_path
+from rigidfluid.core.output.tables import KINDS, read_header, read_rows, table_path
 from rigidfluid.core.output.vtu import read_pvd
 from rigidfluid.core.output.writer import SERIES, SUMMARY
 from rigidfluid.core.setup.assemble import assemble
@@ -187,8 +186,7 @@ def _joint_names(system: System) -> tuple[str, ...]:
 
 def _rows(path: Path, names: Sequence[str], *, may_be_empty: bool = False, complete: bool = True) -> list[Row]:
     try:
-        with path.open(newline="", encoding="utf-8") as file:
-            header = next(csv.reader(file), [])
+        header = read_header(path)
         rows = read_rows(path, complete=complete)
     except FileNotFoundError:
         raise unreadable(path, "no file") from None

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from rigidfluid.core.output.disk import replace_text, writing
+from rigidfluid.core.output.result_file import require_result
 from rigidfluid.errors import OutputError
 from rigidfluid.post.studies.results import Results
 from rigidfluid.post.studies.rows import FAILED, Row, cells
@@ -52,10 +53,11 @@ def read_rows(path: Path) -> dict[str, Row]:
     """Rows of this study and of earlier versions, by fingerprint; none without the file. Raises OutputError."""
     if not path.exists():
         return {}
+    require_result(path)
     try:
         with path.open(newline="", encoding="utf-8") as file:
             return {line["identity"]: _row(line) for line in csv.DictReader(file)}
-    except (OSError, KeyError, TypeError, ValueError) as error:
+    except (OSError, KeyError, TypeError, ValueError, csv.Error) as error:
         found = f"{type(error).__name__}: {error}"
         raise OutputError(str(path), found, "the table of an earlier study", "Use --fresh to start again.") from None
 
