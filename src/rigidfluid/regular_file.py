@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rigidfluid.errors import SceneError
 
-MOST_TEXT, MOST_GEOMETRY = 1 << 26, 1 << 31
+MOST_TEXT, MOST_GEOMETRY = 1 << 26, 1 << 28
 """Largest size of a scene or a table, and of a file of geometry [byte]."""
 
 

@@ -57,7 +57,7 @@ def test_every_package_is_brought_by_something() -> None:
     "limit",
     [
         f"at most {regular_file.MOST_TEXT >> 20} MiB (scenes",
-        f"or {regular_file.MOST_GEOMETRY >> 30} GiB (geometry)",
+        f"or {regular_file.MOST_GEOMETRY >> 20} MiB (geometry)",
         f"{expressions.LONGEST:,} characters, {expressions.DEEPEST} levels",
         f"0, or from {SMALLEST:g} to {LARGEST:g} in size",
         f"| {MOST_ROWS:,} rows |",

@@ -50,7 +50,7 @@ NO_FILES: Mapping[str, Callable[[Path], object]] = {
     "a folder": Path.mkdir,
     "no file": lambda path: None,
     "a link to itself": lambda path: path.symlink_to(path),
-    "2 GiB": _as_a_large_file,
+    "more than is read": _as_a_large_file,
     "64 MiB of zeros": _as_a_hole,
 }
 """What may lie in the place of a file."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import tracemalloc
 from pathlib import Path
 from typing import Any
 
@@ -174,6 +175,27 @@ def test_files_of_no_bounded_size_are_refused(tmp_path: Path) -> None:
         file.truncate(MOST_TEXT + 1)  # holes take no room
     with pytest.raises(SceneError, match=r"scene: found .*large of 64 MiB; allowed is at most 64 MiB"):
         require_regular(tmp_path / "large", "scene", MOST_TEXT)
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_a_text_of_triangles_is_read_in_a_few_times_its_size(tmp_path: Path, end: str) -> None:
+    path = tmp_path / "many.stl"
+    vertices = (f"vertex {n % 97}.25e+00 {n % 89}.5e+00 {n % 83}.75e+00" for n in range(30_000))
+    path.write_bytes(end.join(["solid many", *vertices, "endsolid many"]).encode())
+    tracemalloc.start()
+    facets = read_stl(path, "body.0.file")
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert len(facets.vertices) == 10_000
+    assert most < 8 * path.stat().st_size
+
+
+@pytest.mark.parametrize("row", ["1 2", "1 2 3 4", "1 2 x"])
+def test_a_vertex_has_three_numbers(tmp_path: Path, row: str) -> None:
+    path = tmp_path / "wrong.stl"
+    path.write_text("solid wrong\n" + "vertex 1 2 3\n" * 2 + f"vertex {row}\n")
+    with pytest.raises(SceneError, match=r"wrong.stl, which is no STL file; allowed is three vertices a facet"):
+        read_stl(path, "body.0.file")
 
 
 @pytest.mark.parametrize("ending", ["csv", "stl", "toml", "brep", "vol"])

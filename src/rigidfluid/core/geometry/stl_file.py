@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -47,10 +49,18 @@ def _binary(content: bytes) -> FloatArray:
 
 
 def _text(content: bytes, path: Path, key: str) -> FloatArray:
-    rows = [line.split() for line in content.decode("ascii", errors="replace").splitlines()]
     try:
-        vertices = np.array([row[1:] for row in rows if row and row[0] == "vertex"], dtype=float).reshape(-1, 3, 3)
+        return np.fromiter(_coordinates(content), dtype=float).reshape(-1, 3, 3)
     except ValueError:
         remedy = "Rewrite the file, as text or binary."
         raise SceneError(key, f"{path}, which is no STL file", "three vertices a facet", remedy) from None
-    return vertices
+
+
+def _coordinates(content: bytes) -> Iterator[float]:
+    """Numbers of all vertices, one at a time: lists of words would take twenty times the file's memory; raises
+    ValueError where a vertex has not three."""
+    for line in re.finditer(rb"[^\r\n]+", content):
+        keyword, *words = line[0].split() or [b""]
+        if keyword == b"vertex":
+            x, y, z = words
+            yield from (float(x), float(y), float(z))
