@@ -3,10 +3,25 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Annotated
 
 import typer
+
+_CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f]")
+
+
+def named_path(path: str | Path) -> Path:
+    """Path of what is to be written. An empty one would be the working folder, unasked; blanks and control characters
+    are not seen where it is shown, or change what is."""
+    text = str(path)
+    if not text.strip():
+        raise typer.BadParameter("an empty name; allowed is a path, such as '.' for the working folder")
+    if _CONTROLS.search(text):
+        raise typer.BadParameter(f"{text!r} with a control character; allowed is a path of visible ones")
+    return Path(text)
+
 
 SceneFile = Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file (TOML).")]
 """Path of a scene, for `load_scene`."""
@@ -17,7 +32,9 @@ Assignments = Annotated[
 ]
 """Changes to a scene, for `load_scene`."""
 
-JsonFile = Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Write the same there as JSON.")]
+JsonFile = Annotated[
+    Path | None, typer.Option("--json", parser=named_path, metavar="FILE", help="Write the same there as JSON.")
+]
 """Path of a file, for `write_json`."""
 
 

@@ -7,12 +7,7 @@ from typing import Annotated, Literal
 
 import typer
 
-
-def named_path(text: str) -> Path:
-    """Path of an option; an empty one would be the working folder, unasked."""
-    if not text:
-        raise typer.BadParameter("an empty name; allowed is a path, such as '.' for the working folder")
-    return Path(text)
+from rigidfluid.commands import named_path
 
 
 def _backend_names() -> list[str]:
@@ -49,7 +44,8 @@ Backends = Annotated[
 ]
 Version = Annotated[bool, typer.Option("--version", help="Print the version and exit.")]
 MovieFile = Annotated[
-    Path | None, typer.Option("--out", metavar="FILE", help="An .mp4 or .gif file; default DIR/movie.mp4.")
+    Path | None,
+    typer.Option("--out", parser=named_path, metavar="FILE", help="An .mp4 or .gif file; default DIR/movie.mp4."),
 ]
 Shown = Annotated[
     Literal["speed", "vorticity", "pressure"], typer.Option("--show", help="Which quantity of the fluid.")

@@ -13,6 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rigidfluid.cli.console import make_console, reported, tell
+from rigidfluid.commands import named_path
 from rigidfluid.start.wishes import CHOICES, Fluid, Shape, Units, Wishes
 
 
@@ -23,7 +24,7 @@ def _names() -> list[str]:
     return example_names()
 
 
-NewFile = Annotated[Path, typer.Argument(metavar="FILE", help="Scene file to write.")]
+NewFile = Annotated[Path, typer.Argument(parser=named_path, metavar="FILE", help="Scene file to write.")]
 Dimension = Annotated[int | None, typer.Option(min=2, max=3, help="Number of space dimensions; 2 if not given.")]
 Bodies = Annotated[int | None, typer.Option(min=1, max=200, help="Number of bodies; 1 if not given.")]
 ShapeName = Annotated[Shape | None, typer.Option(help="Of the bodies; sphere if not given: in 2D a disk.")]

@@ -21,6 +21,7 @@ import numpy as np
 from rigidfluid.core.model.ranks import ALONE, Ranks
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.types import FluidState
+from rigidfluid.core.output.disk import write_new
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.result_file import require_result
 from rigidfluid.core.output.sealed_file import BLOCK, is_intact, is_sealed, seal
@@ -66,7 +67,7 @@ def stage_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
         file.attrs["format"] = FORMAT
         _store(file, checkpoint)
     seal(image)
-    _staged(path).write_bytes(image.getbuffer())
+    write_new(_staged(path), image.getbuffer())
 
 
 def adopt_checkpoint(path: Path) -> None:

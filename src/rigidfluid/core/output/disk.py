@@ -5,15 +5,28 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import BinaryIO
 
 from rigidfluid.errors import OutputError
+
+
+def open_new(path: Path) -> BinaryIO:
+    """Open a file that nobody knows by another name: what was in its place is removed, and a link is not followed."""
+    path.unlink(missing_ok=True)
+    return path.open("xb")
+
+
+def write_new(path: Path, data: bytes | memoryview) -> None:
+    """Write a file by `open_new`."""
+    with open_new(path) as file:
+        file.write(data)
 
 
 def replace_text(path: Path, text: str) -> None:
     """Write a file as a whole: one that cannot be written leaves the one before, or none."""
     staged = path.with_name(path.name + ".part")
     try:
-        staged.write_text(text, encoding="utf-8", newline="\n")
+        write_new(staged, text.encode())
         staged.replace(path)
     except OSError:
         staged.unlink(missing_ok=True)

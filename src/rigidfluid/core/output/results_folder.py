@@ -58,6 +58,19 @@ def take_folder(out: Path, product: Product, *, new: bool) -> TextIO:
         return _locked(out, product)
 
 
+def join_folder(out: Path, product: Product, added: Product) -> None:
+    """Make a folder, in which a product was found, one to which files of ``added`` are written.
+
+    Raises OutputError where a link or a device lies where a file is to be written, or the folder has no mark and files
+    are there already in the place of the added ones; else it is marked.
+    """
+    with writing(out):
+        refuse_links(out, product)
+        if not _is_marked(out, product):
+            _refuse_foreign(out, added)
+            _locked(out, product).close()
+
+
 def refuse_links(out: Path, product: Product) -> None:
     """Raise OutputError where a link, a device or a folder lies in the place of a file, or a link in that of a
     subfolder: what it leads to is not this product's."""
@@ -71,10 +84,9 @@ def refuse_links(out: Path, product: Product) -> None:
 
 
 def clear(out: Path, product: Product) -> None:
-    """Remove earlier files, so that two runs never mix; tables are left, as they are started again in place."""
+    """Remove earlier files, so that two runs never mix."""
     for file in list(product.present(out)):
-        if file.suffix != ".csv":
-            file.unlink()
+        file.unlink()
 
 
 def _is_marked(out: Path, product: Product) -> bool:

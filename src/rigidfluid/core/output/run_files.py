@@ -35,6 +35,21 @@ class Files:
     content: str
 
 
+_ADDED = (
+    Files(
+        "`report.html`, `report/`",
+        rf"report\.html|report/({'|'.join(PICTURES)})\.(png|svg)",
+        "by `rigidfluid report DIR`",
+        "plots and one page that holds them all",
+    ),
+    Files(
+        "`movie.mp4` or `movie.gif`",
+        r"movie\.(mp4|gif)|\.movie\.(mp4|gif)\.part\.(mp4|gif)",
+        "by `rigidfluid movie DIR`",
+        "a picture for each output time",
+    ),
+)
+
 FILES = (
     *(Files(f"`{name}.csv`", rf"{name}\.csv", "each step", content) for name, content in TABLES.items()),
     Files("`fields.pvd`", r"fields\.pvd(\.part)?", "each `output.every`", "the list of all in `fields/`, for ParaView"),
@@ -52,12 +67,9 @@ FILES = (
     ),
     Files("`state.h5`", r"state(\.\d+)?\.h5(\.part)?", "each `output.every`", "checkpoint for `--resume`"),
     Files("`summary.json`", r"summary\.json(\.part)?", "at the end", "the figures that matter, and what they cost"),
-    Files(
-        "`report.html`, `report/`",
-        rf"report\.html|report/({'|'.join(PICTURES)})\.(png|svg)",
-        "by `rigidfluid report DIR`",
-        "plots and one page that holds them all",
-    ),
+    *_ADDED,
 )
 
 RUN = Product("run", "|".join(files.pattern for files in FILES), subfolders=("fields", "report"))
+ADDED = Product("run", "|".join(files.pattern for files in _ADDED), subfolders=("report",))
+"""What commands add to the folder of a run."""

@@ -17,6 +17,7 @@ from zlib import crc32
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidfluid.core.output.disk import write_new
 from rigidfluid.core.output.records import Row
 from rigidfluid.core.output.result_file import require_result
 from rigidfluid.errors import OutputError
@@ -71,10 +72,11 @@ class Table:
         self.written = Prefix() if kept is None else kept
         """Content so far."""
         if kept is None:
-            path.write_bytes(b"")
+            write_new(path, b"")
             self.extend([tuple(columns)])
         else:
             kept.require(path)
+            _refuse_second_name(path)
             os.truncate(path, kept.length)
 
     def extend(self, rows: Sequence[Row]) -> None:
@@ -92,6 +94,14 @@ class Table:
                 raise OutputError(str(self._path), found, allowed, "Leave it alone during a run; then use --resume.")
             file.write(data)
         self.written = self.written.followed_by(data)
+
+
+def _refuse_second_name(path: Path) -> None:
+    """Raise OutputError where a file is reached by another name too, whose owner would lose what is written here."""
+    names = path.stat().st_nlink
+    if names > 1:
+        remedy = "Put a copy in its place, or run without --resume."
+        raise OutputError(str(path), f"a file with {names} names (hard links)", "a file with this name alone", remedy)
 
 
 KINDS: Mapping[str, type[float | int | str]] = {

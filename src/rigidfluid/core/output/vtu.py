@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.model.types import Fields
 from rigidfluid.core.output.cell_gradients import nodal_vorticity
-from rigidfluid.core.output.disk import replace_text
+from rigidfluid.core.output.disk import open_new, replace_text
 from rigidfluid.core.output.result_file import require_result
 from rigidfluid.errors import OutputError
 
@@ -68,7 +68,12 @@ def write_grid(
     data = ET.SubElement(piece, "PointData")
     for name, values in arrays.items():
         data_array(data, name, values)
-    ET.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+    _write(path, root)
+
+
+def _write(path: Path, root: ET.Element) -> None:
+    with open_new(path) as file:
+        ET.ElementTree(root).write(file, encoding="utf-8", xml_declaration=True)
 
 
 def write_pvtu(path: Path, pieces: Sequence[str], dimension: int) -> None:
@@ -84,7 +89,7 @@ def write_pvtu(path: Path, pieces: Sequence[str], dimension: int) -> None:
         ET.SubElement(data, "PDataArray", type="Float32", Name=name, NumberOfComponents=str(components))
     for piece in pieces:
         ET.SubElement(grid, "Piece", Source=piece)
-    ET.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+    _write(path, root)
 
 
 def write_pvd(path: Path, times: Sequence[float], series: Sequence[Mapping[str, str]]) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from rigidfluid.core.output.disk import writing
+from rigidfluid.core.output.disk import open_new, writing
 from rigidfluid.python_process import environment, failure, python
 
 _POLL = 1.0
@@ -23,7 +23,7 @@ def run_apart(scene: Path, folder: Path, log: Path, *, resume: bool, watch: Call
     Raises OutputError if the log cannot be written.
     """
     command = python("-m", "rigidfluid", "run", str(scene), "--out", str(folder))
-    with writing(log), log.open("wb") as output:
+    with writing(log), open_new(log) as output:
         process = subprocess.Popen(
             [*command, "--resume"] if resume else command,
             env=environment(),

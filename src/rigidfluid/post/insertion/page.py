@@ -9,6 +9,7 @@ import matplotlib
 
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Mesh
+from rigidfluid.core.output.disk import write_new
 from rigidfluid.post.insertion.figures import Figures, SurfaceFigures
 from rigidfluid.post.insertion.pictures import histogram, plane_picture, space_picture
 from rigidfluid.post.reports.html import document, grid, picture, table
@@ -40,7 +41,7 @@ def write_page(figures: Figures, mesh: Mesh, system: System, out: Path) -> list[
         picture(cells, "How many cells have which quality, 1 that of a regular simplex."),
     ]
     path = out / PAGE
-    path.write_text(document(f"Mesh of {figures.name}", parts), encoding="utf-8")
+    write_new(path, document(f"Mesh of {figures.name}", parts).encode())
     return [shown, cells, path]
 
 

@@ -16,6 +16,8 @@ from matplotlib.image import AxesImage
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.output.disk import writing
+from rigidfluid.core.output.results_folder import join_folder
+from rigidfluid.core.output.run_files import ADDED, RUN
 from rigidfluid.core.setup.model import Model
 from rigidfluid.errors import OutputError
 from rigidfluid.post.movies.picture import draw_bodies, flow_image, ground, paint_flow
@@ -75,9 +77,12 @@ def movie(
     shot, frames = shot_of(results, look.follow, look.window, look.plane), _frames(results)
     follow = None if look.follow is None else results.number_of(look.follow)
     scale = shared_scale(results, look.show, shot.plane, follow) if results.series else None
+    if out is None:
+        join_folder(Path(folder), RUN, ADDED)
     partial = path.with_name(f".{path.name}.part{path.suffix}")
     with matplotlib.rc_context(STYLE | _encoder()), writing(path):
         figure, axes, image = _stage(results, shot, look, scale)
+        partial.unlink(missing_ok=True)  # a link there would be followed
         try:
             with writer.saving(figure, str(partial), dpi=100):
                 for number, frame in enumerate(frames, start=1):

@@ -9,9 +9,9 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
-from rigidfluid.core.output.disk import writing
-from rigidfluid.core.output.results_folder import refuse_links
-from rigidfluid.core.output.run_files import FILES, RUN
+from rigidfluid.core.output.disk import write_new, writing
+from rigidfluid.core.output.results_folder import join_folder
+from rigidfluid.core.output.run_files import ADDED, FILES, RUN
 from rigidfluid.core.setup.model import Model
 from rigidfluid.post.reports.coefficient_plot import coefficient_caption, coefficient_plot
 from rigidfluid.post.reports.coefficients import Figures, figures, reference
@@ -58,7 +58,7 @@ def report(out: Path, plane: PlaneName = "motion", follow: str | None = None, mo
     """
     out = Path(out)
     results = read_results(out, model=model)
-    refuse_links(out, RUN)
+    join_folder(out, RUN, ADDED)
     seen = view_plane(results, plane)
     body = None if follow is None else results.number_of(follow)
     with matplotlib.rc_context(STYLE), writing(out / FOLDER):
@@ -69,7 +69,7 @@ def report(out: Path, plane: PlaneName = "motion", follow: str | None = None, mo
             for name, caption, figure, kinds in _pictures(results, seen, body)
         )
         written, shown = save_pictures(named, out / FOLDER)
-        (out / PAGE).write_text(page(results, _data(out), shown, _notes(results), _figures(results)), encoding="utf-8")
+        write_new(out / PAGE, page(results, _data(out), shown, _notes(results), _figures(results)).encode())
     return [*written, out / PAGE]
 
 
@@ -150,7 +150,7 @@ def _data(out: Path) -> Iterator[tuple[str, str]]:
     """Names and content of the files that the run has written so far, but for those in folders."""
     for files in FILES:
         for path in sorted(out.iterdir()):
-            if re.fullmatch(files.pattern, path.name) and path.name != PAGE and path.suffix != ".part":
+            if re.fullmatch(files.pattern, path.name) and path.name != PAGE and ".part" not in path.suffixes:
                 yield path.name, files.content.replace("`", "")
 
 

@@ -10,6 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from rigidfluid.core.output.disk import open_new
+
 # Okabe and Ito's palette, without its yellow, which is too pale for a line.
 BLACK, ORANGE, SKY, GREEN, BLUE, VERMILLION, PURPLE = (
     "#000000", "#E69F00", "#56B4E9", "#009E73", "#0072B2", "#D55E00", "#CC79A7",
@@ -70,5 +72,7 @@ def save(figure: Figure, folder: Path, name: str, kinds: Sequence[str]) -> list[
     """Write a figure in each of ``kinds``; equal figures give equal files."""
     paths = [folder / f"{name}.{kind}" for kind in kinds]
     for path in paths:
-        figure.savefig(path, metadata={"Date": None} if path.suffix == ".svg" else {"Software": None})
+        metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
+        with open_new(path) as file:
+            figure.savefig(file, format=path.suffix[1:], metadata=metadata)
     return paths

@@ -7,6 +7,9 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable
+from functools import partial
+from itertools import groupby
+from operator import attrgetter
 from pathlib import Path
 
 import pytest
@@ -25,6 +28,7 @@ from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import OutputError
 from rigidfluid.post.comparison.compare import product_of
 from rigidfluid.post.insertion import insert
+from rigidfluid.post.movies import movie
 from rigidfluid.post.reports import report
 from rigidfluid.post.studies import load_study, run_study
 
@@ -105,12 +109,80 @@ def test_the_list_of_results_is_the_documentation_s() -> None:
     page = (ROOT / "docs" / "results.md").read_text(encoding="utf-8")
     for files in FILES:
         assert f"| {files.shown} | {files.written} | {files.content} |" in page
+    assert f"| `{RUN.mark}` | at the start |" in page
+
+
+def test_so_is_that_of_the_readme() -> None:
+    lines = [
+        f"* {when}: {', '.join(one.shown for one in files)}" for when, files in groupby(FILES, attrgetter("written"))
+    ]
+    block = "\n".join(["<!-- files of a run, from core/output/run_files -->", *lines, f"* at the start: `{RUN.mark}`"])
+    assert f"{block}\n<!-- end -->" in (ROOT / "README.md").read_text(encoding="utf-8"), f"put there\n{block}"
 
 
 def test_each_file_of_a_run_and_its_report_is_on_the_list(tmp_path: Path) -> None:
     rigidfluid.run(SCENE, tmp_path)
     report(tmp_path)
+    movie(tmp_path)
     assert {path for path in contents(tmp_path) if path.name != RUN.mark} == set(RUN.present(tmp_path))
+
+
+@pytest.mark.parametrize("name", ["report.html", "report/gap.png", "movie.gif", "movie.mp4"])
+def test_neither_a_run_nor_its_report_and_movie_replace_somebody_else_s(tmp_path: Path, name: str) -> None:
+    """In a folder to which the files of a run were copied, without its mark."""
+    rigidfluid.run(SCENE, tmp_path)
+    (tmp_path / RUN.mark).unlink()
+    (tmp_path / name).parent.mkdir(exist_ok=True)
+    (tmp_path / name).write_text("years of work")
+    before = contents(tmp_path)
+    for write in (report, movie, partial(rigidfluid.run, SCENE)):
+        with pytest.raises(OutputError, match=r": found a file of this name in a folder that is of no run"):
+            write(tmp_path)
+    assert contents(tmp_path) == before
+
+
+def test_a_folder_of_a_run_that_has_lost_its_mark_is_marked_again(tmp_path: Path) -> None:
+    rigidfluid.run(SCENE, tmp_path)
+    (tmp_path / RUN.mark).unlink()
+    for _ in range(2):
+        report(tmp_path)
+        rigidfluid.run(SCENE, tmp_path)
+        movie(tmp_path)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="links need rights there")
+def test_nothing_is_written_to_what_has_another_name(tmp_path: Path) -> None:
+    """Hard links to each file, as a snapshot of the folder has."""
+    out, kept = tmp_path / "out", tmp_path / "kept"
+    kept.mkdir()
+    rigidfluid.run(SCENE, out)
+    report(out)
+    movie(out)
+    for file in set(contents(out)) - {out / RUN.mark}:
+        (kept / file.name).hardlink_to(file)
+    before = contents(kept)
+    longer = SCENE.model_copy(update={"time": SCENE.time.model_copy(update={"end": 0.2})})
+    with pytest.raises(OutputError, match=r"bodies.csv: found a file with 2 names \(hard links\)"):
+        rigidfluid.run(longer, out, resume=True)
+    report(out)
+    movie(out)
+    rigidfluid.run(longer, out)
+    assert contents(kept) == before
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="links need rights there")
+@pytest.mark.parametrize("name", ["state.h5.part", "summary.json.part", "fields.pvd.part"])
+def test_links_that_are_put_there_during_a_run_are_not_followed(tmp_path: Path, name: str) -> None:
+    out, victim = tmp_path / "out", tmp_path / "victim"
+    victim.write_text("years of work")
+
+    def put_a_link(_: object) -> None:
+        if not os.path.lexists(out / name):
+            (out / name).symlink_to(victim)
+
+    simulate(SCENE, out, progress=put_a_link)
+    assert victim.read_text() == "years of work"
+    assert not (out / "state.h5").is_symlink()
 
 
 def test_a_run_removes_the_report_of_the_one_before(tmp_path: Path) -> None:
@@ -187,4 +259,16 @@ def test_an_empty_name_is_not_the_working_folder(tmp_path: Path, monkeypatch: py
     result = CliRunner().invoke(app, ["run", str(SCENES / "dry_bounce.toml"), "--out", ""])
     assert result.exit_code == 2
     assert "an empty name" in result.stderr
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", [" ", "\t", "a\nb", "\x1b[31mred", "a\x9bb"])
+def test_a_name_that_cannot_be_seen_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    monkeypatch.chdir(tmp_path)
+    scene = str(SCENES / "dry_bounce.toml")
+    commands = [["run", scene, "--out", name], ["insert", scene, "--out", name], ["movie", ".", "--out", name]]
+    for command in [*commands, ["new", name], ["check", scene, "--json", name]]:
+        result = CliRunner().invoke(app, command)
+        assert result.exit_code == 2
+        assert "an empty name" in result.stderr or "control character" in result.stderr
     assert not list(tmp_path.iterdir())
