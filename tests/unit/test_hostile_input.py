@@ -46,6 +46,11 @@ def test_a_folder_s_name_that_is_too_long(tmp_path: Path) -> None:
     assert "File name too long" in refused("run", str(SCENE), "--out", str(tmp_path / ("a" * 300)))
 
 
+@pytest.mark.parametrize("command", ["report", "movie", "new"])
+def test_a_name_that_is_too_long(tmp_path: Path, command: str) -> None:
+    assert "File name too long" in refused(command, str(tmp_path / ("a" * 300)))
+
+
 def test_a_summary_of_brackets(tmp_path: Path) -> None:
     rigidfluid.run(dry_scene({}, ball([0.5, 0.5], [0.1, 0.0]), end=0.02, step=0.01), tmp_path)
     (tmp_path / "summary.json").write_text("[" * 100_000)
@@ -62,6 +67,16 @@ def test_an_output_that_is_full(tmp_path: Path) -> None:
     assert "standard output: found No space left on device" in done.stderr
     assert "Traceback" not in done.stderr
     assert (tmp_path / "out" / "summary.json").exists()
+
+
+@POSIX
+@pytest.mark.parametrize("command", [[], ["--help"], ["run", "--help"], ["--version"], ["plugins"], ["examples"]])
+def test_an_output_of_words_alone_that_is_full(command: list[str]) -> None:
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run([*COMMAND, *command], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith("Error: standard output: found No space left on device")
+    assert "Traceback" not in done.stderr
 
 
 @POSIX

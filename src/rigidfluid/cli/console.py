@@ -8,7 +8,7 @@ import sys
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import IO, Any
 
 import typer
 from rich.console import Console
@@ -90,6 +90,29 @@ def show_all_text() -> None:
             stream.reconfigure(errors="backslashreplace")
 
 
+@contextmanager
+def streams_told() -> Iterator[None]:
+    """End in one paragraph where standard output refuses the words of Typer, as helps are, or of a start."""
+    try:
+        yield
+    except OutputError as error:
+        sys.exit(refusal(error).exit_code)
+    except OSError:
+        try:
+            sys.stdout.write("\n")  # refused too, if the stream was the reason
+            sys.stdout.flush()
+        except OSError as error:
+            sys.exit(refusal(_refused(error, sys.stdout)).exit_code)
+        raise
+
+
+def _refused(error: OSError, stream: IO[str]) -> OutputError:
+    """Give up a stream that refuses, and say so."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())  # what is left would fail again at exit
+    remedy = "Results are where they were to be written."
+    return OutputError("standard output", error.strerror, "a stream that can be written to", remedy)
+
+
 class _Output(Console):
     """A console whose stream may be full or closed."""
 
@@ -98,8 +121,7 @@ class _Output(Console):
         try:
             super().print(*objects, **options)
         except OSError as error:
-            os.dup2(os.open(os.devnull, os.O_WRONLY), self.file.fileno())  # what is left would fail again at exit
+            refused = _refused(error, self.file)
             if isinstance(error, BrokenPipeError):
                 raise typer.Exit(FOUND_ERRORS) from None
-            remedy = "Results are where they were to be written."
-            raise OutputError("standard output", error.strerror, "a stream that can be written to", remedy) from None
+            raise refused from None

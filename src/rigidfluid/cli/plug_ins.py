@@ -8,7 +8,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
-from rigidfluid.cli.console import refusal, reported
+from rigidfluid.cli.console import refusal, reported, streams_told
 from rigidfluid.plugin_commands import PluginCommand, missing_package, plugin_commands
 
 
@@ -30,6 +30,11 @@ class PluginTyperCommand(TyperCommand):
 
 class Commands(TyperGroup):
     """The commands below, and those of plug-ins after them."""
+
+    def main(self, *args: Any, **kwargs: Any) -> Any:
+        """Run the command line."""
+        with streams_told():
+            return super().main(*args, **kwargs)
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Names, each once."""

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from rigidfluid.errors import OutputError
 
 
 def require_new(path: Path) -> None:
-    """Raise OutputError where there is a file already."""
-    if path.exists():
-        raise OutputError(str(path), "a file that is there", "a new one", "Move it away, or choose another place.")
+    """Raise OutputError where there is a file already, or none can have that name."""
+    with _writing(path):
+        if path.exists():
+            raise OutputError(str(path), "a file that is there", "a new one", "Move it away, or choose another place.")
 
 
 def write_new(files: dict[Path, bytes]) -> None:
@@ -18,10 +21,16 @@ def write_new(files: dict[Path, bytes]) -> None:
     for path in files:
         require_new(path)
     for path, content in files.items():
-        try:
+        with _writing(path):
             path.parent.mkdir(parents=True, exist_ok=True)
             with path.open("xb") as file:
                 file.write(content)
-        except OSError as error:
-            allowed = "a folder that can be written to, on a disk with room"
-            raise OutputError(str(path), error.strerror, allowed, "Work in another folder.") from None
+
+
+@contextmanager
+def _writing(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        allowed = "a folder that can be written to, on a disk with room"
+        raise OutputError(str(path), error.strerror, allowed, "Work in another folder.") from None

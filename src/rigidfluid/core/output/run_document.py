@@ -15,11 +15,14 @@ from rigidfluid.errors import OutputError
 def read_document(folder: Path, needed: Iterable[str] = ("scene", "status")) -> tuple[dict[str, Any], dict[str, Any]]:
     """Summary with the ``needed`` keys, empty where the run has not ended, and the tables of its scene or model; raises
     OutputError where no run has written the ``folder``, or it cannot be read."""
-    if (folder / SUMMARY).exists():
-        summary = read_summary(folder / SUMMARY, needed)
-        return summary, summary["scene"]
-    if (folder / CHECKPOINT).exists():
-        return {}, read_scene(folder / CHECKPOINT)
-    found = f"neither {SUMMARY} nor {CHECKPOINT}" if folder.is_dir() else "no folder"
+    try:
+        if (folder / SUMMARY).exists():
+            summary = read_summary(folder / SUMMARY, needed)
+            return summary, summary["scene"]
+        if (folder / CHECKPOINT).exists():
+            return {}, read_scene(folder / CHECKPOINT)
+        found = f"neither {SUMMARY} nor {CHECKPOINT}" if folder.is_dir() else "no folder"
+    except OSError as error:  # no folder can have that name, or it is closed to us
+        found = error.strerror or str(error)
     remedy = "Give the one that the run wrote, its --out, or run the scene again."
     raise OutputError(str(folder), found, "the folder of a run", remedy)
