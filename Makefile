@@ -47,6 +47,7 @@ test-wheel:
 	$(PYTHON) -m venv .venv-wheel
 	.venv-wheel/bin/python -m pip install --quiet dist/*.whl
 	cd .venv-wheel && bin/rigidfluid examples rebound && bin/rigidfluid check rebound.toml && bin/rigidfluid run rebound.toml
+	$(PYTHON) tools/installed_size.py .venv-wheel
 
 test-long: .venv/.installed-test
 	$(PYTEST) --timeout 1800 --durations 40 -m 'long and not validation'

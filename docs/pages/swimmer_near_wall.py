@@ -21,6 +21,7 @@ MOMENTS = (40.0, 120.0, 200.0, 300.0, 400.0)
 """Times at which the paths on two meshes are compared, whole cycles."""
 
 SNAPSHOTS = 5
+CYCLE = 4.0
 
 
 @dataclass(frozen=True)
@@ -136,8 +137,26 @@ def judged(first: Reading, second: Reading) -> dict[str, object]:
             f"With the range {size} it is {moment} parallel to the wall again."
             for size, moment in zip((".03", ".24"), moments, strict=True)
         ),
+        "sharpest": sharpest_turn(second),
         "overlap": "No bodies overlap." if min(gaps) > 0.0 else "Bodies overlap.",
     }
+
+
+def sharpest_turn(reading: Reading) -> str:
+    """Say where the turn in a cycle changes most while the law acts, and whether the mesh is another there."""
+    whole, steps = reading.of_body("swimmer"), reading.run.history.steps
+    cycles = np.arange(whole["time"][0], whole["time"][-1], CYCLE)
+    turns = np.diff(np.interp(cycles, whole["time"], np.degrees(whole["angle"])))
+    force = np.hypot(whole["cfx"], whole["cfy"])
+    acts = np.array([force[(whole["time"] > now) & (whole["time"] <= now + CYCLE)].max() for now in cycles[:-1]]) > 0.0
+    changes = np.where(acts[:-1] & acts[1:], np.abs(np.diff(turns)), 0.0)
+    most = int(np.argmax(changes))
+    meshes = np.interp(cycles[most : most + 3] - reading.since, steps["time"], steps["remeshes"])
+    same = "on the same mesh" if meshes[0] == meshes[-1] else "where it is re-meshed"
+    return (
+        f"With the range .24 the turn of a cycle changes most, while the law acts, from {turns[most]:.3f} to "
+        f"{turns[most + 1]:.3f} degrees at {cycles[most + 1]:.0f}, {same}."
+    )
 
 
 def parallel(reading: Reading) -> float | None:
@@ -169,6 +188,5 @@ range .03:
 
 {meshes}
 
-With the range .24 the rate at which the swimmer turns changes where it is re-meshed, at 402: the right ball is pressed
-onto the contact, and a coarser mesh in its gap resists less.
+{sharpest}
 """
