@@ -141,7 +141,7 @@ def remarks(rows: Sequence[Row]) -> Iterator[str]:
         return
     mosts = [max(row.iterations) for row in rows]
     ratio = max(mosts) / min(mosts)
-    yield f"The most iterations of the cases are {min(mosts)} to {max(mosts)}, {ratio:.2f} times as many."
+    yield f"The largest numbers of iterations lie between {min(mosts)} and {max(mosts)}, a ratio of {ratio:.2f}."
     alike = [row for row in rows if row.step == FINEST[1]]
     if len(alike) > 1:
         first, last = alike[0], alike[-1]

@@ -244,11 +244,11 @@ def after_kissing(pairs: dict[str, Pair]) -> str:
 
 {table(head, rows)}
 
-With the lossy law the pair {stays}: its gap stays below {largest:.3f} cm. With the elastic law
-(`contact.restitution = 1`) it {bounces}, up to {bounce:.3f} cm. Until kissing the run with the coarse mesh and step is
-up to {before[0]:.4f} cm from the shipped one, that with the long step alone {before[1]:.4f} cm: two meshes and two
-steps {agree} within {AGREEMENT:.1%} of the box. Until the end they are {until_end[0]:.3f} cm and {until_end[1]:.3f} cm
-from it, and the two elastic runs {bounced:.3f} cm from each other; to that distance the time after kissing is
+With the lossy law the pair {stays}: its gap stays below {largest:.3f} cm. With the elastic law (`contact.restitution =
+1`) it {bounces}, up to {bounce:.3f} cm. Until kissing the run with the coarse mesh and step differs from the shipped
+one by up to {before[0]:.4f} cm, and the run with the long step alone by {before[1]:.4f} cm: two meshes and two steps
+{agree} within {AGREEMENT:.1%} of the box. Until the end the differences are {until_end[0]:.3f} cm and
+{until_end[1]:.3f} cm, and the two elastic runs differ by {bounced:.3f} cm; so far the motion after kissing is
 reproducible."""
 
 
@@ -271,9 +271,9 @@ def about_offsets(offsets: dict[float, Pair]) -> str:
     return f"""\
 ## The offset
 
-A pair that falls exactly in line tumbles by nothing but round-off and the mesh. So did the published one, if it started
-in line; its disks are at one height at {side_by_side:.3f} s. Here the trailing disk starts beside the line. Coarse
-runs:
+If a pair falls exactly in line, only round-off and the mesh make it tumble. This holds for the published one too, if
+it started in line; its disks are at one height at {side_by_side:.3f} s. Here the trailing disk starts beside the
+line. Coarse runs:
 
 {table(head, rows)}
 

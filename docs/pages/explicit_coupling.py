@@ -243,8 +243,9 @@ system with steps of .25 ms. A run ends where a speed is {factor} times the grea
 
 ## Light bodies
 
-Below the name of a way and a step is what it does in 50 ms: for `explicit` the greatest speed over the right one, or
-when it ends; for `iterated` the flow solves in a step. One system has at most {most} times the right speed.
+Each column is for a coupling and a step. It lists for `explicit` the greatest speed in 50 ms over the right one, or the
+time at which the run ends; for `iterated` the solutions of the flow per step. One system has at most {most} times the
+right speed.
 
 {limit}
 

@@ -33,7 +33,7 @@ def page(work: Work) -> Page:
 
 TEXT = """`scenes/hundred_spheres.toml`: {spheres} spheres settle in a box. In the fluid they are followed to {end} s,
 and without it (`--set fluid.backend=dry`) to the end, with a law that loses no energy. The scene is for meshes, memory
-and contacts: cells are as long as the spheres' radii, and there is nothing to hold the paths against.
+and contacts: cells are as long as the spheres' radii, and no published paths exist to compare with.
 
 {figures}
 

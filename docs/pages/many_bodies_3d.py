@@ -48,7 +48,7 @@ def page(work: Work) -> Page:
 
 TEXT = """`scenes/many_bodies_3d.toml`: {bodies} spheres and ellipsoids of all sizes and tilts settle in a box and meet.
 The scene is for the meshes: cells are about as long as the smaller bodies' radii, too coarse for the flow between
-bodies, and there is nothing to hold the paths against.
+bodies, and no published paths exist to compare with.
 
 {figures}
 

@@ -129,7 +129,7 @@ The largest error of all is {dry_error}; it is of first order in the substep.
 ## In a fluid
 
 The disk is thrown three radii away from the wall. St = (ρ_s + ρ_f) D v/(9μ), v the speed at a gap of half a radius on
-the way in; the rebound is the speed there on the way out over v, 0 where the disk does not come there again. The
+the way in; the rebound is the speed there on the way out over v, or 0 if the disk does not come back so far. The
 formula is .8 exp(-35/St). It was fitted to drops and balls (Legendre, Daniel and Guiraud 2005,
 doi:10.1063/1.2010527), by the speed of the approach before any film; infinite cylinders have no such measurements.
 

@@ -105,7 +105,7 @@ def figures(run: Run, density: float) -> dict[str, str]:
 ABOUT = """`scenes/settling_cylinder.toml`: a cylinder is let go in a channel of four diameters, half a
 diameter from its wall, and falls some thirty diameters. Published are the settled Reynolds numbers and drag
 coefficients (Wachs, Comput. Fluids 38 (2009) 1608, after Yu et al., J. Non-Newtonian Fluid Mech. 104 (2002) 87), dotted
-on the right; the middle of the channel is dotted on the left. Settled is here the second half of the way.
+on the right; the middle of the channel is dotted on the left. The second half of the way counts as settled.
 
 {figures}
 

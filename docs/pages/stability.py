@@ -84,13 +84,13 @@ STYLES: dict[bool, dict[str, Any]] = {
 """Of cases that pass, and of those that do not."""
 
 
-ABOUT = """A dot is a case: the largest share that a figure has of what is allowed. Left of the line it passes.
-{passed} of {cases} cases pass. Those that do not:
+ABOUT = """Each dot is a case, at the largest ratio of one of its figures to what is allowed. Cases left of the line
+pass: {passed} of {cases}. These do not:
 
 {failing}
 
-Dots at the left edge are at {least:g} or less. What allows nothing, such as an overlap or a rejected step, has no
-share; a case that fails by that alone is at the right edge.
+Dots at the left edge are at {least:g} or less. Figures of which nothing is allowed, such as overlaps or rejected steps,
+have no ratio; a case that fails by one of these alone is at the right edge.
 
 ## What is demanded
 
@@ -107,9 +107,9 @@ ball has a radius of 0.1 and a density of 1, boxes have a side of 1, and speeds 
   in a fluid at rest set it into motion at once.
 * energy created, energy lost: how far the residual fell below what it was after the first step, and how far it rose
   above, over what was put in: the energy stored at the start, and the most that gravity, faces and driven bodies had
-  worked by any time. What viscosity took hides nothing of what was created, but what was lost before may. Of what was
-  lost, `path_friction` is taken off: friction in impacts shorter than a step, which the balance does not see. It
-  excuses no energy that was created.
+  worked by any time. Dissipation by viscosity does not hide created energy, but an earlier loss may. The energy
+  lost is reduced by `path_friction`, the friction in impacts shorter than a step, which the balance does not contain.
+  The energy created is not reduced.
 * energy lost untold: that of a run that names no body that turned too far in a step. A disk that spins at 1e4 rad/s
   turns by 10 rad in a millisecond: [why energy is lost by that](../numerics.md#flow-that-goes-round-with-a-body), and
   how it falls with the step.

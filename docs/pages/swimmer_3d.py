@@ -166,9 +166,9 @@ DRAG = """
 
 ## Drag
 
-Errors of mesh and box apart: spheres move along their line, and what is listed is the drag on one of them over 6πμ,
-in closed cubes. A box makes it 1/(1/drag - k/half-width), so that a line through 1/drag leads beyond it. What is off
-there is the mesh's error. All three spheres of the swimmer have the same, and a factor common to all forces does not
-change how it swims.
+This separates the errors of the mesh and of the box. Spheres move along their line in closed cubes; the drag on one of
+them is listed over 6πμ. A box makes it 1/(1/drag - k/half-width), so that a line through 1/drag gives the drag without
+a box. The error that is left there is the mesh's. All three spheres of the swimmer have the same, and a factor common
+to all forces does not change how it swims.
 
 """

@@ -107,9 +107,10 @@ difference of the speeds is over the final one. CPU times, of one thread, are ov
 
 {figures}
 
-Ahead the fluid is held at rest, which the disk feels: with a window that ends half a channel's width ahead its final
-speed is {less_ahead:.3%} off, with one width {as_shipped:.3%}, with two at most {farther:.3%}. Behind the wake leaves
-through the open end. The energy that it takes along is in the balance.
+Ahead of the disk the window's fluid is held at rest, and this slows the disk: its final speed is off by
+{less_ahead:.3%} with half a channel's width of fluid ahead, by {as_shipped:.3%} with one width, and by at most
+{farther:.3%} with two. Behind the disk the wake leaves through the open end. The balance includes the energy that it
+takes along.
 
 With cells and steps twice as large the final speed in the whole channel is {changes:+.2%} off, and that in the window
 as shipped {coarse:.3%} off the whole channel's."""

@@ -17,9 +17,9 @@ PAGE = ROOT / "docs" / "attack.md"
 MEANINGS = {
     "scenes": """
 Scenes that the JSON Schema allows, shipped ones with tables from there or with one to three changes, and scene files
-with damaged text. Each is read, all questions of `rigidfluid check` are asked, and without a fluid the first steps
-are taken. It holds if that comes to its end, or is refused by an error of rigidfluid that names the field, or what
-the scene itself names. Warnings count as errors.
+with damaged text. Each is read and checked as by `rigidfluid check`, and a scene without a fluid takes its first steps.
+It holds if this ends normally, or if an error of rigidfluid refuses it and names the field, or what the scene itself
+names. Warnings count as errors.
 """,
     "overrides": """
 The same with shipped scenes and one or two settings, as after `--set`.
@@ -32,8 +32,7 @@ error of rigidfluid names the part.
 """,
     "geometry": """
 Files of geometry, and a table over time, with damage to their bytes, and other things in their place. A scene with
-such a file is read, checked and begun. It holds if that comes to its end, or is refused by the name of the key or the
-file.
+such a file is read, checked and started. It holds if this ends normally, or if an error names the key or the file.
 """,
     "checkpoints": """
 Folders of runs in which the checkpoint, the tables or other files are damaged, edited or exchanged, taken up with

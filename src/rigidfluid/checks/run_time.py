@@ -40,7 +40,8 @@ def run_time_findings(size: RunSize, system: System, time: TimeTable) -> Iterato
     )
     most += steps * contact / speed
     found: Figures = {"steps": steps, "meshes": size.meshes, "least": least, "most": most, "speed": speed}
-    text = f"{steps} steps and some {size.meshes} meshes take {time_in_words(least, most)} of one core, as fast as now"
+    taken = time_in_words(least, most)
+    text = f"{steps} steps and some {size.meshes} meshes take {taken} of one core at its present speed"
     yield Finding("note", QUESTION, (), text, found=found)
 
 
