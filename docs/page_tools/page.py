@@ -79,8 +79,8 @@ def picture_name(name: str, suffix: str) -> str:
 
 def _about_older(outdated: Mapping[str, str]) -> Iterable[str]:
     if outdated:
-        which = ", ".join(outdated) if len(outdated) <= FEW else f"{len(outdated)}"
-        yield f"Of its runs, {which} are older, made at {', '.join(sorted(set(outdated.values())))}."
+        which = ", ".join(outdated) if len(outdated) <= FEW else f"{len(outdated)} of its runs"
+        yield f"Older, made at {', '.join(sorted(set(outdated.values())))}: {which}."
 
 
 def _save(figure: Figure | Path, path: Path) -> None:

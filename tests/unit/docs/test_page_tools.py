@@ -310,7 +310,7 @@ def test_a_page_shows_its_figures_and_what_made_it(tmp_path: Path) -> None:
     text = (tmp_path / "two.md").read_text()
     assert text.startswith("# Two disks\n\nMade on ")
     assert f"at {commit()}, in " in text
-    assert "are older" not in text
+    assert "Older, made at" not in text
     assert "| a | b |\n| --- | --- |\n| 1 | 2 |" in text
     for name in ("two.png", "two_heights.png"):
         assert (tmp_path / name).stat().st_size > 0
@@ -332,7 +332,7 @@ def test_a_page_says_which_of_its_runs_are_older(tmp_path: Path) -> None:
     Made(("before",), ("others",)).write(work.folder / "run")
     work.run("run", scene())
     page.write(shown(), "two", work, tmp_path)
-    assert "Of its runs, run are older, made at before." in (tmp_path / "two.md").read_text()
+    assert "Older, made at before: run." in (tmp_path / "two.md").read_text()
 
 
 def test_a_figure_that_the_text_does_not_show_is_refused(tmp_path: Path) -> None:

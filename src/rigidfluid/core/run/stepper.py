@@ -30,7 +30,7 @@ from rigidfluid.core.run.stopwatch import Stopwatch
 from rigidfluid.core.run.stuck import stuck
 from rigidfluid.errors import StepError, StepRejected
 
-MOST_ATTEMPTS = 4
+MOST_ATTEMPTS = 8
 """Path and fluid of a step with contacts follow each other so many times at most; two are usual."""
 
 
