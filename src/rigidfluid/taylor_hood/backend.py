@@ -161,6 +161,12 @@ class TaylorHoodBackend(FluidBackend):
         return self._discretisation(mesh, prescribed).unknowns
 
     @final
+    def state_shapes(self, mesh: Mesh, pose: Pose) -> dict[str, tuple[int, ...]]:
+        from rigidfluid.taylor_hood.state import state_shapes
+
+        return state_shapes(Numbering.from_mesh(mesh), mesh, pose)
+
+    @final
     def joined(self, states: Sequence[FluidState], parts: Sequence[Mesh], mesh: Mesh) -> FluidState:
         from rigidfluid.taylor_hood.pieces import joined
 

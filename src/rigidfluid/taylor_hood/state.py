@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.model.types import FluidState, Mesh, Pose, Twist
+from rigidfluid.taylor_hood.numbering import Numbering
 from rigidfluid.taylor_hood.surfaces import Surfaces
 
 
@@ -30,3 +31,12 @@ def resting_state(surfaces: Surfaces, mesh: Mesh, pose: Pose, twist: Twist) -> F
         "position": pose.position,
         "position_previous": pose.position,
     }
+
+
+def state_shapes(numbering: Numbering, mesh: Mesh, pose: Pose) -> dict[str, tuple[int, ...]]:
+    """Shapes of the arrays of a state on a mesh of this ``numbering``, with the bodies at ``pose``."""
+    n, d = pose.position.shape
+    nodes, vertices, twist = (numbering.nodes, d), (numbering.vertices,), (n, d + (1 if d == 2 else 3))
+    both = {"velocity": nodes, "pressure": vertices, "twist": twist, "position": (n, d)}
+    earlier = {f"{name}_previous": shape for name, shape in both.items()}
+    return both | earlier | {"points_previous": mesh.geometry.shape}

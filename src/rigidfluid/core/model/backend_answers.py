@@ -25,6 +25,14 @@ def state(answer: Any, *_: Any, **__: Any) -> None:
             raise Wrong(f"{name} {describe(values)}", "arrays of numbers")
 
 
+def memory(answer: Any, *_: Any) -> None:
+    """Refuse what is no mapping of names to arrays of finite numbers, which a checkpoint is checked for."""
+    state(answer)
+    for name, values in answer.items():
+        if not np.isfinite(values).all():
+            raise Wrong(f"{name} {values[~np.isfinite(values)].flat[0]}", "finite numbers")
+
+
 def state_and_energy(answer: Any, *_: Any, **__: Any) -> None:
     """Refuse what is no state and a kinetic energy."""
     _refuse_other_length(answer, 2)

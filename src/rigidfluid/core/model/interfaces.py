@@ -443,7 +443,13 @@ class FluidBackend(Part):
     def forget(self) -> None:
         """Drop every cache, so that the next step depends on the given state alone."""
 
-    @gives(backends.state)
+    @gives(optional(instance(lambda: Mapping)))
+    def state_shapes(self, mesh: Mesh, pose: Pose) -> Mapping[str, tuple[int, ...]] | None:
+        """Shapes of the arrays of its state on a mesh, with the bodies at a pose, as a checkpoint is to have them; None
+        where the backend does not say."""
+        return None
+
+    @gives(backends.memory)
     def memory(self) -> FluidState:
         """Data on which the next step depends besides the given state, to the last bit: named arrays for a checkpoint.
 

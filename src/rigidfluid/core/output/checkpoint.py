@@ -6,29 +6,29 @@ Each rank has a file of its own. The ranks themselves are not stored: who reads 
 from __future__ import annotations
 
 import io
-import json
-import types
-import typing
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import IntArray
 from rigidfluid.core.model.ranks import ALONE, Ranks
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.types import FluidState
+from rigidfluid.core.output.checkpoint_checks import json_table, require_sound
 from rigidfluid.core.output.disk import write_new
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.result_file import require_result
 from rigidfluid.core.output.sealed_file import BLOCK, is_intact, is_sealed, seal
+from rigidfluid.core.output.stored_records import Misfit, load, load_value, store
 from rigidfluid.core.output.tables import Prefix
 from rigidfluid.errors import OutputError
 
-FORMAT = 10
+FORMAT = 11
 """Number of the checkpoint's format, raised with each change of the records, the backend's memory or the tables'
 columns; files of other formats are refused."""
 
@@ -36,14 +36,16 @@ columns; files of other formats are refused."""
 @dataclass(frozen=True, slots=True)
 class Checkpoint:
     """Data with which a rank goes on with a run: its ``state`` and the backend's ``memory``, the ``scene`` as JSON, the
-    digests of the ``files`` that it names, the ``times`` of its outputs, the ``tables`` as far as they were written,
-    what the run has cost, its ``extremes``, and how many ``ranks`` have such."""
+    digests of the ``files`` that it names, the ``times`` of its outputs, the ``sizes`` (times, 3) of the files that the
+    rank then wrote, 0 for none [byte], the ``tables`` as far as they were written, what the run has cost, its
+    ``extremes``, and how many ``ranks`` have such."""
 
     state: State
     memory: FluidState
     scene: str
     files: str
     times: tuple[float, ...]
+    sizes: IntArray
     tables: Mapping[str, Prefix]
     seconds: Mapping[str, float]
     rejected: int
@@ -65,7 +67,7 @@ def stage_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
     image = io.BytesIO()
     with h5py.File(image, "w", userblock_size=BLOCK) as file:
         file.attrs["format"] = FORMAT
-        _store(file, checkpoint)
+        store(file, checkpoint)
     seal(image)
     write_new(_staged(path), image.getbuffer())
 
@@ -82,22 +84,27 @@ def read_staged(path: Path, ranks: Ranks) -> Checkpoint:
 
 
 def read_checkpoint(path: Path, ranks: Ranks = ALONE) -> Checkpoint:
-    """Read a checkpoint back, bit for bit; raises OutputError where there is none or it cannot be read."""
+    """Read a checkpoint back, bit for bit; raises OutputError where there is none, it cannot be read, or no run can
+    have written what it holds."""
     with _opened(path) as file:
-        checkpoint: Checkpoint = _load(file, Checkpoint, ranks)
+        checkpoint: Checkpoint = load(file, Checkpoint, ranks)
+        require_sound(checkpoint)
     return replace(checkpoint, state=_with_shared_cells(checkpoint.state))
 
 
 def read_origin(path: Path) -> tuple[int, int]:
     """The tick of a checkpoint, and how many ranks wrote it together; raises OutputError as read_checkpoint does."""
     with _opened(path) as file:
-        return int(file["state"]["tick"][()]), int(file["ranks"][()])
+        tick, ranks = (load_value(file, name, int, ALONE) for name in ("state/tick", "ranks"))
+        if ranks < 1:
+            raise Misfit("ranks", f"{ranks}", "1 or more")
+        return tick, ranks
 
 
 def read_scene(path: Path) -> dict[str, Any]:
     """The scene of the run that a checkpoint is of; raises OutputError where there is none or it cannot be read."""
     with _opened(path) as file:
-        return dict(json.loads(file["scene"].asstr()[()]))
+        return json_table("scene", load_value(file, "scene", str, ALONE))
 
 
 @contextmanager
@@ -111,10 +118,21 @@ def _opened(path: Path) -> Iterator[h5py.File]:
         raise OutputError(str(path), "no checkpoint of this version", f"one of format {FORMAT}", remedy)
     if not is_intact(data):
         raise OutputError(str(path), "a damaged or edited checkpoint", "one as it was written", remedy)
-    with h5py.File(io.BytesIO(data), "r") as file:
-        if (found := file.attrs["format"]) != FORMAT:
-            raise OutputError(str(path), f"a checkpoint of format {found}", f"format {FORMAT}", remedy)
-        yield file
+    try:
+        with h5py.File(io.BytesIO(data), "r") as file:
+            if not np.array_equal(found := file.attrs.get("format"), FORMAT):
+                raise OutputError(str(path), f"a checkpoint of format {found}", f"format {FORMAT}", remedy)
+            yield file
+    except Misfit as misfit:
+        raise misfit_error(path, misfit) from None
+    except (OSError, RuntimeError, ValueError, TypeError, KeyError) as error:  # of HDF5, for what is no file of its own
+        found = f"what cannot be read ({type(error).__name__}: {error})"
+        raise OutputError(str(path), found, "a checkpoint as it was written", remedy) from error
+
+
+def misfit_error(path: Path, misfit: Misfit) -> OutputError:
+    """The error of a checkpoint that holds what none can."""
+    return OutputError(f"{path}, {misfit.name}", misfit.found, misfit.allowed, "Run without --resume.")
 
 
 def _staged(path: Path) -> Path:
@@ -124,37 +142,3 @@ def _staged(path: Path) -> Path:
 def _with_shared_cells(state: State) -> State:
     """A moved mesh has the very cells of its reference: backends know a topology by its array."""
     return replace(state, mesh=state.reference.mesh.moved_to(state.mesh.geometry))
-
-
-def _store(group: h5py.Group, record: Any) -> None:
-    names = record if isinstance(record, Mapping) else [field.name for field in fields(record)]
-    for name in names:
-        value = record[name] if isinstance(record, Mapping) else getattr(record, name)
-        if is_dataclass(value) or isinstance(value, Mapping):
-            _store(group.create_group(name), value)
-        elif value is not None and not isinstance(value, Ranks):
-            group.create_dataset(name, data=value)
-
-
-def _load(group: h5py.Group, kind: Any, ranks: Ranks) -> Any:
-    hints = typing.get_type_hints(kind)
-    return kind(**{name: _value(group.get(name), hint, ranks) for name, hint in hints.items()})
-
-
-def _value(stored: Any, hint: Any, ranks: Ranks) -> Any:
-    if hint is Ranks:
-        return ranks
-    if typing.get_origin(hint) in (typing.Union, types.UnionType):
-        if stored is None:
-            return None
-        hint = next(option for option in typing.get_args(hint) if option is not type(None))
-    if is_dataclass(hint):
-        return _load(stored, hint, ranks)
-    if typing.get_origin(hint) is not None and issubclass(typing.get_origin(hint), Mapping):
-        inner = typing.get_args(hint)[1]
-        return {name: _value(item, inner, ranks) for name, item in stored.items()}
-    if hint is str:
-        return stored.asstr()[()]
-    if typing.get_origin(hint) is tuple:
-        return tuple(stored[()].tolist())
-    return hint(stored[()]) if hint in (int, float, bool) else np.asarray(stored[()])

@@ -12,6 +12,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TextIO
 
+import numpy as np
+
+from rigidfluid.core.geometry.arrays import IntArray
 from rigidfluid.core.model.joints import COORDINATES
 from rigidfluid.core.model.ranks import ALONE, ROOT, Ranks
 from rigidfluid.core.model.types import Fields
@@ -24,6 +27,13 @@ from rigidfluid.core.output.checkpoint import (
     stage_checkpoint,
 )
 from rigidfluid.core.output.disk import replace_text, writing
+from rigidfluid.core.output.output_files import (
+    FIELDS,
+    present_files,
+    require_outputs,
+    stem_of_output,
+    written_sizes,
+)
 from rigidfluid.core.output.point_sets import PointSet
 from rigidfluid.core.output.records import Records, columns
 from rigidfluid.core.output.results_folder import clear, take_folder
@@ -32,7 +42,7 @@ from rigidfluid.core.output.tables import Prefix, Table, table_path
 from rigidfluid.core.output.vtu import DATASETS, FLUID, write_pvd, write_pvtu, write_vtu
 from rigidfluid.errors import OutputError
 
-CHECKPOINT, SUMMARY, SERIES, FIELDS = "state.h5", "summary.json", "fields.pvd", "fields"
+CHECKPOINT, SUMMARY, SERIES = "state.h5", "summary.json", "fields.pvd"
 
 
 class Writer:
@@ -55,6 +65,7 @@ class Writer:
         self._tables: dict[str, Table] = {}
         self._mark: TextIO | None = None
         self._series: list[dict[str, str]] = []
+        self.sizes: IntArray = np.zeros((0, len(DATASETS)), dtype=np.int64) if resumed is None else resumed.sizes
         with ExitStack() as undo:
             undo.callback(self.close)
             self._start(columns(dimension, coordinates), resumed)
@@ -66,6 +77,8 @@ class Writer:
             if is_mine:
                 self._mark = _taken(out, new=resumed is None)
                 self._series = [] if resumed is None else _series(out, len(resumed.times))
+        with self._ranks.raise_on_all(), writing(out):
+            require_outputs(out, self.sizes, self._ranks.rank)
         for name, names in columns_by_table.items():
             path = table_path(out, name)
             with self._writing_once(path) as is_mine:
@@ -89,7 +102,7 @@ class Writer:
     def output(self, fields: Fields | None, points: Mapping[str, PointSet], times: tuple[float, ...]) -> None:
         """Write what there is at the last of ``times``, fields if there are some and ``points`` by name, and the series
         of all of them."""
-        stem = f"{FIELDS}/{len(times) - 1:06d}"
+        stem = stem_of_output(len(times) - 1)
         files = {} if fields is None else {FLUID: self._write_fields(stem, fields)}
         for name, some in points.items():
             files[name] = f"{stem}.{name}.vtu"
@@ -97,6 +110,7 @@ class Writer:
                 if is_mine:
                     some.write(self.out / files[name])
         self._series.append(files)
+        self.sizes = np.vstack([self.sizes, written_sizes(self.out, len(times) - 1, self._ranks.rank)])
         self._write_series(times)
 
     def _write_fields(self, stem: str, fields: Fields) -> str:
@@ -201,10 +215,9 @@ def earlier_run(out: Path, ranks: Ranks) -> Checkpoint:
 
 def earlier_parts(out: Path, count: int) -> list[Checkpoint]:
     """The checkpoints of all ``count`` ranks that have written a run, in one process; raises as `earlier_run`."""
-    paths = [out / checkpoint_name(rank) for rank in range(count)]
-    parts = [read_checkpoint(path) for path in paths]
+    parts = [read_checkpoint(out / checkpoint_name(rank)) for rank in range(count)]
     latest = max(part.state.tick for part in parts)
-    return [_checkpoint_of_tick(latest, path, part, ALONE) for path, part in zip(paths, parts, strict=True)]
+    return [_checkpoint_of_tick(latest, out / checkpoint_name(rank), part, ALONE) for rank, part in enumerate(parts)]
 
 
 def _checkpoint_of_tick(latest: int, path: Path, checkpoint: Checkpoint, ranks: Ranks) -> Checkpoint:
@@ -235,12 +248,4 @@ def _checkpoints(out: Path) -> list[Path]:
 
 def _series(out: Path, count: int) -> list[dict[str, str]]:
     """The files of the first ``count`` output times of a run, as far as they are in its folder."""
-    return [_present(out, f"{FIELDS}/{number:06d}") for number in range(count)]
-
-
-def _present(out: Path, stem: str) -> dict[str, str]:
-    """The files of one output time by what is in them; several ranks have listed their fields."""
-    listed = f"{stem}.pvtu"
-    files = {FLUID: listed if (out / listed).exists() else f"{stem}.vtu"}
-    files |= {name: f"{stem}.{name}.vtu" for name in DATASETS if name != FLUID}
-    return {name: file for name, file in files.items() if (out / file).exists()}
+    return [present_files(out, number) for number in range(count)]

@@ -8,36 +8,41 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from rigidfluid.core.mesh.distribution import joined, partition, parts_of, shared
 from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.state import State
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.output.checkpoint import Checkpoint
-from rigidfluid.core.output.writer import earlier_parts, earlier_run, ranks_of_run
+from rigidfluid.core.output.writer import checkpoint_name, earlier_parts, earlier_run, ranks_of_run
+from rigidfluid.core.run.checkpoint_fit import require_fit, require_fluid
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.scene.earlier import tables_now
 from rigidfluid.core.scene.scene import FluidTable
 from rigidfluid.core.setup.model import Model
-from rigidfluid.errors import OutputError
+from rigidfluid.errors import OutputError, PluginError
 from rigidfluid.registry import FLUID_BACKEND, Registry
 
 
-def earlier_of(
-    model: Model, out: Path | None, backend: FluidBackend, clock: Clock, files: Mapping[str, str]
-) -> Checkpoint:
+def earlier_of(model: Model, out: Path | None, system: System, clock: Clock, files: Mapping[str, str]) -> Checkpoint:
     """Read the checkpoint to resume; its scene must be this one, but for names of units, the end of time and a backend
     of one format.
 
-    Raises OutputError where it is not, a file that the scene names has another digest than it has in ``files``, or the
-    run is past the clock's end.
+    Raises OutputError where it is not, a file that the scene names has another digest than it has in ``files``, the
+    state is not one of the ``system``, or the run is past the clock's end.
     """
     if out is None:
         raise OutputError("resume", "no folder", "the folder of an earlier run", "Name it with --out.")
+    backend = system.backend
     checkpoint = checkpoint_for(backend, out)
-    stored, given = tables_now(json.loads(checkpoint.scene)), dict(model.document)
+    given = dict(model.document)
+    stored = tables_now(json.loads(checkpoint.scene))
+    stored |= {name: {} for name in ("time", "scene", "fluid") if not isinstance(stored.get(name), dict)}
     stored["time"]["end"] = given["time"]["end"]
     stored["scene"], given["scene"] = (tables["scene"] | {"units": None} for tables in (stored, given))
-    if _is_of_another(backend, stored["fluid"]["backend"]):
+    if _is_of_another(backend, stored["fluid"].get("backend")):
         stored["fluid"], given["fluid"] = (_common_keys(tables["fluid"]) for tables in (stored, given))
         checkpoint = replace(checkpoint, memory={})
     if stored != given:
@@ -49,10 +54,25 @@ def earlier_of(
             "Give the same scene and the same --set, or run without --resume.",
         )
     _refuse_changed_files(checkpoint, files)
+    path = out / checkpoint_name(backend.ranks.rank)
+    with backend.ranks.raise_on_all():
+        require_fit(path, checkpoint, system, clock)
+        require_fluid(path, checkpoint.state, backend)
     if checkpoint.state.tick > clock.last_tick:
         found = f"an end at {clock.end:g}, before the checkpoint's time {clock.time(checkpoint.state.tick):g}"
         raise OutputError(str(out), found, "a later one", "Move time.end; the tables hold what was before it.")
     return checkpoint
+
+
+def recall_memory(out: Path, earlier: Checkpoint, backend: FluidBackend) -> None:
+    """Let the backend go on from its memory in a checkpoint; raises OutputError where it cannot, StepError where memory
+    does not suffice."""
+    try:
+        backend.recall(earlier.memory, earlier.state.mesh)
+    except PluginError as error:
+        path = out / checkpoint_name(backend.ranks.rank)
+        found = f"what {error.subject} cannot take up ({error.found})"
+        raise OutputError(f"{path}, memory", found, "what the backend gave", "Run without --resume.") from error
 
 
 def _refuse_changed_files(checkpoint: Checkpoint, now: Mapping[str, str]) -> None:
@@ -64,9 +84,9 @@ def _refuse_changed_files(checkpoint: Checkpoint, now: Mapping[str, str]) -> Non
         raise OutputError(changed[0], "a file that has changed since the checkpoint", "the same content", remedy)
 
 
-def _is_of_another(backend: FluidBackend, name: str) -> bool:
+def _is_of_another(backend: FluidBackend, name: object) -> bool:
     """Whether a backend of this name is another one that writes the same states."""
-    if name == backend.name or backend.state_format is None:
+    if name == backend.name or backend.state_format is None or not isinstance(name, str):
         return False
     before = Registry.load().find(FLUID_BACKEND, name)
     return (before.state_format, before.curved_cells) == (backend.state_format, backend.curved_cells)
@@ -94,7 +114,10 @@ def checkpoint_for(backend: FluidBackend, out: Path) -> Checkpoint:
     pieces = None
     with ranks.raise_on_all():
         if ranks.is_root:
-            pieces = _redistributed(backend, earlier_parts(out, written))
+            parts = earlier_parts(out, written)
+            for rank, part in enumerate(parts):
+                require_fluid(out / checkpoint_name(rank), part.state, backend)
+            pieces = _redistributed(backend, parts)
     own = ranks.scatter(pieces)
     reference = own.state.reference
     mesh = shared(reference.mesh, ranks)
@@ -105,7 +128,11 @@ def checkpoint_for(backend: FluidBackend, out: Path) -> Checkpoint:
 def _redistributed(backend: FluidBackend, parts: list[Checkpoint]) -> list[Checkpoint]:
     """Checkpoint for each process of the ``backend``; what is the same for all is the first's."""
     states = _cut(backend, _joined(backend, [part.state for part in parts]))
-    return [replace(parts[0], state=state, memory={}, ranks=len(states)) for state in states]
+    sizes = [part.sizes for part in parts] + [np.zeros_like(parts[0].sizes)] * len(states)
+    return [
+        replace(parts[0], state=state, memory={}, sizes=own, ranks=len(states))
+        for state, own in zip(states, sizes, strict=False)
+    ]
 
 
 def _joined(backend: FluidBackend, parts: list[State]) -> State:

@@ -31,7 +31,7 @@ from rigidfluid.core.run.caller_input import folder_of, interval_of, over_time, 
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.initial_state import initial_state
 from rigidfluid.core.run.mesh_keys import updater_of
-from rigidfluid.core.run.resumption import earlier_of
+from rigidfluid.core.run.resumption import earlier_of, recall_memory
 from rigidfluid.core.run.schedule import Schedule
 from rigidfluid.core.run.stepper import Counts, Stepper
 from rigidfluid.core.run.stopwatch import Stopwatch
@@ -112,7 +112,7 @@ class Simulation(Described):
         _refuse_lone_ranks(system.backend, processes)
         self.clock = Clock.for_steps(model.time.step, model.time.shortest, model.time.end)
         self._files = {} if out is None else file_digests(model.document)
-        earlier = earlier_of(model, out, system.backend, self.clock, self._files) if resume else None
+        earlier = earlier_of(model, out, system, self.clock, self._files) if resume else None
         self.watch = Stopwatch()
         self.mesh_updater = updater_of(model.fluid, system, self.clock, self.watch)
         self.stepper = Stepper(system, self.clock, self.mesh_updater, self.watch, model.time.tolerance)
@@ -385,7 +385,7 @@ class Simulation(Described):
 
     def _take_up(self, out: Path, earlier: Checkpoint) -> None:
         self.state = earlier.state
-        self.system.backend.recall(earlier.memory, self.state.mesh)
+        recall_memory(out, earlier, self.system.backend)
         self.stepper.counts = Counts(**{field.name: getattr(earlier, field.name) for field in fields(Counts)})
         self._elapsed_before, self._cpu_before, self._times = earlier.elapsed, earlier.cpu_time, earlier.times
         self.watch.seconds = dict(earlier.seconds)
@@ -437,6 +437,7 @@ class Simulation(Described):
             scene=json.dumps(self.model.document),
             files=json.dumps(self._files),
             times=self._times,
+            sizes=writer.sizes,
             tables=writer.tables,
             seconds=self.watch.seconds,
             **asdict(self.counts),

@@ -30,6 +30,8 @@ class MemoryContract(FluidContract):
                 assert "/" not in name
                 assert isinstance(array, np.ndarray)
                 assert array.dtype == np.float64
+            shapes = flow.backend.state_shapes(flow.mesh, flow.pose)
+            assert shapes is None or shapes == {name: array.shape for name, array in state.items()}
 
     def test_a_step_changes_nothing_that_it_is_given(self, dimension: int) -> None:
         """Neither the state, nor mesh and step; and a second step does not change what the first one returned."""

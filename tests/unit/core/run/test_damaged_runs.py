@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -13,7 +14,7 @@ from dry_scenes import ball, dry_scene
 from falling import falling_disk
 
 import rigidfluid
-from rigidfluid.core.output.sealed_file import BLOCK
+from rigidfluid.core.output.sealed_file import BLOCK, seal
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.errors import OutputError
 
@@ -93,6 +94,98 @@ def test_a_checkpoint_of_a_version_without_digests(folder: Path) -> None:
     path = folder / "state.h5"
     path.write_bytes(path.read_bytes()[BLOCK:])
     refuse_to_resume(folder, "state.h5", "no checkpoint of this version")
+
+
+def put(file: h5py.File, name: str, value: object) -> None:
+    del file[name]
+    file.create_dataset(name, data=value)
+
+
+def put_outside(file: h5py.File, name: str) -> None:
+    shape = file[name].shape
+    del file[name]
+    file.create_dataset(name, shape, "f8", external=[("/dev/zero", 0, 8 * int(np.prod(shape)))])
+
+
+def put_nowhere(file: h5py.File, name: str) -> None:
+    del file[name]
+    file.create_dataset(name, (1 << 40,), "f8")
+
+
+EDITS: dict[str, tuple[str, str, Callable[[h5py.File, str], object]]] = {
+    "nothing there": ("state/past", "nothing", lambda file, name: file.__delitem__(name)),
+    "a number below 0": ("state/tick", "-5", lambda file, name: put(file, name, -5)),
+    "another time": ("state/tick", "time", lambda file, name: put(file, name, file[name][()] - 1)),
+    "more steps than ticks": ("state/count", "1152", lambda file, name: put(file, name, 1 << 60)),
+    "no number": ("state/twist/velocity", "nan", lambda file, name: put(file, name, [[np.nan, 0.0]])),
+    "another shape": ("state/twist/velocity", r"\(7, 2\)", lambda file, name: put(file, name, np.zeros((7, 2)))),
+    "another type": ("state/gaps", "float32", lambda file, name: put(file, name, np.zeros(1, "f4"))),
+    "text": ("elapsed", "object", lambda file, name: put(file, name, "soon")),
+    "a negative time": ("elapsed", "-1", lambda file, name: put(file, name, -1.0)),
+    "times out of order": ("times", "0.0", lambda file, name: put(file, name, file[name][()][::-1])),
+    "no ranks": ("ranks", "0", lambda file, name: put(file, name, 0)),
+    "a body that is not there": ("state/contacts/body_a", "9", lambda file, name: put(file, name, file[name][()] + 9)),
+    "no table": ("scene", "'{'", lambda file, name: put(file, name, "{")),
+    "a scene of nothing": ("", "another scene", lambda file, _: put(file, "scene", "{}")),
+    "tables missing": ("tables", "bodies", lambda file, name: file.__delitem__("tables/steps")),
+    "a link out": ("times", "a link", lambda file, name: link_outwards(file)),
+    "a group": ("times", "a group", lambda file, name: (file.__delitem__(name), file.create_group(name))),
+    "data of another file": ("extremes/highest_speed", "values that are not in the file", put_outside),
+    "data that is not there": ("times", "values that are not in the file", put_nowhere),
+    "another format": ("", "a checkpoint of format", lambda file, _: file.attrs.__setitem__("format", "new")),
+}
+
+
+@pytest.mark.parametrize("edit", EDITS)
+def test_an_edited_checkpoint_whose_digest_was_renewed(folder: Path, edit: str) -> None:
+    """All that is read is checked, and what is wrong is named."""
+    name, found, change = EDITS[edit]
+    image = io.BytesIO((folder / "state.h5").read_bytes())
+    with h5py.File(image, "r+") as file:
+        change(file, name)
+    seal(image)
+    (folder / "state.h5").write_bytes(image.getbuffer())
+    refuse_to_resume(folder, f"state.h5, {name}" if name else "", found)
+
+
+@pytest.mark.parametrize(
+    ("name", "shape", "found"),
+    [("state/fluid/twist", (7, 3), r"shape \(7, 3\)"), ("memory/geometry", (2, 2), "cannot take up")],
+)
+def test_arrays_of_a_fluid_whose_digest_was_renewed(
+    tmp_path: Path, name: str, shape: tuple[int, int], found: str
+) -> None:
+    rigidfluid.run(fall(0.008), tmp_path)
+    image = io.BytesIO((tmp_path / "state.h5").read_bytes())
+    with h5py.File(image, "r+") as file:
+        put(file, name, np.zeros(shape))
+    seal(image)
+    (tmp_path / "state.h5").write_bytes(image.getbuffer())
+    with pytest.raises(OutputError, match=rf"state.h5, {name.partition('/')[0]}.*{found}"):
+        rigidfluid.run(fall(0.016), tmp_path, resume=True)
+
+
+def test_a_mesh_with_a_vertex_that_is_not_there(tmp_path: Path) -> None:
+    rigidfluid.run(fall(0.008), tmp_path)
+    image = io.BytesIO((tmp_path / "state.h5").read_bytes())
+    with h5py.File(image, "r+") as file:
+        file["state/reference/mesh/cells"][0, 0] = 10**6
+    seal(image)
+    (tmp_path / "state.h5").write_bytes(image.getbuffer())
+    with pytest.raises(
+        OutputError, match=r"state.h5, state/reference/mesh/cells: found 1000000; allowed is numbers below"
+    ):
+        rigidfluid.run(fall(0.016), tmp_path, resume=True)
+
+
+@pytest.mark.parametrize("name", ["fields/000001.bodies.vtu", "fields/000000.contacts.vtu"])
+def test_a_file_of_an_output_that_is_other_than_the_checkpoint_says(folder: Path, name: str) -> None:
+    path = folder / name
+    data = path.read_bytes()
+    path.write_bytes(data[:-1])
+    refuse_to_resume(folder, name, f"{len(data) - 1} bytes")
+    path.unlink()
+    refuse_to_resume(folder, name, "no such file")
 
 
 @pytest.mark.parametrize("name", ["bodies.csv", "contacts.csv", "joints.csv", "energy.csv", "steps.csv", "probes.csv"])
