@@ -2,13 +2,24 @@
 
 from __future__ import annotations
 
+import os
 import stat
+from contextlib import suppress
 from pathlib import Path
 
-from rigidfluid.errors import SceneError
+from rigidfluid.errors import ArgumentError, SceneError
 
 MOST_TEXT, MOST_GEOMETRY = 1 << 26, 1 << 28
 """Largest size of a scene or a table, and of a file of geometry [byte]."""
+
+
+def path_of(key: str, value: object, allowed: str, remedy: str) -> Path:
+    """The path that a value names; raises ArgumentError, which names the ``key``, where no file can be called so."""
+    if isinstance(value, str | os.PathLike):
+        with suppress(UnicodeEncodeError):
+            if (name := os.fsencode(value)) and b"\0" not in name:
+                return Path(os.fsdecode(name))
+    raise ArgumentError(key, repr(value), allowed, remedy)
 
 
 def require_regular(path: Path, key: str, most: float, allowed: str = "a file that is there") -> None:

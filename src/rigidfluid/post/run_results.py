@@ -22,6 +22,7 @@ from rigidfluid.core.output.vtu import read_pvd, read_vtu
 from rigidfluid.core.output.writer import SERIES
 from rigidfluid.core.setup.description import refuse_description
 from rigidfluid.errors import OutputError
+from rigidfluid.regular_file import path_of
 
 
 class RunResults(History):
@@ -121,10 +122,12 @@ def load_results(folder: str | Path) -> RunResults:
 
     Raises
     ------
+    ArgumentError
+        If it is no path.
     OutputError
         If the folder has neither a summary nor a checkpoint, or they cannot be read.
     """
-    return RunResults(Path(folder))
+    return RunResults(path_of("folder", folder, "a path", "Give the folder of a run."))
 
 
 def _coordinates(folder: Path, dimension: int) -> list[str]:

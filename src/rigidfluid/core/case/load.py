@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +11,7 @@ from rigidfluid.core.case.joint_kinds import read_drives
 from rigidfluid.core.case.part_tables import check_part_tables
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.case.time_factor import read_time_tables
+from rigidfluid.core.geometry.value_types import describe
 from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.earlier import tables_now
 from rigidfluid.core.scene.overrides import override
@@ -20,6 +20,7 @@ from rigidfluid.core.scene.scene import AUTO, Scene, read_toml
 from rigidfluid.core.scene.validation import read_table
 from rigidfluid.errors import ArgumentError
 from rigidfluid.registry import FLUID_BACKEND, Registry, missing_packages
+from rigidfluid.regular_file import path_of
 
 
 def scene_from_dict(data: Mapping[str, Any]) -> Scene:
@@ -42,6 +43,8 @@ def scene_from_dict(data: Mapping[str, Any]) -> Scene:
     PluginError
         If it names a part that is not there.
     """
+    if not isinstance(data, Mapping):
+        raise ArgumentError("scene", describe(data), "tables, as a dict", "load_scene takes a scene file.")
     scene = scene_of_results(data)
     if missing_packages(model_of(scene).fluid.backend.part):
         Registry.load().get(FLUID_BACKEND, scene.fluid.backend)  # says what is missing
@@ -101,10 +104,21 @@ def load_scene(path: str | Path, overrides: Iterable[str] = ()) -> Scene:
     PluginError
         If it names a part that is not there.
     """
-    if not isinstance(path, str | PathLike):
-        raise ArgumentError("path", repr(path), "a path", "Give a scene file; scene_from_dict takes tables.")
-    assignments = tuple(overrides)
-    data = read_toml(Path(path))
-    with told_in_file(Path(path), assignments):
+    file = path_of("path", path, "a path", "Give a scene file; scene_from_dict takes tables.")
+    assignments = _assignments(overrides)
+    data = read_toml(file)
+    with told_in_file(file, assignments):
         override(data, assignments)
         return scene_from_dict(data)
+
+
+def _assignments(overrides: Iterable[str]) -> tuple[str, ...]:
+    """The assignments as texts; raises ArgumentError where they are none."""
+    try:
+        given = None if isinstance(overrides, str) else tuple(overrides)
+    except TypeError:
+        given = None
+    if given is None or not all(isinstance(one, str) for one in given):
+        allowed = "several texts such as 'contact.range=0.02'"
+        raise ArgumentError("overrides", describe(overrides), allowed, "Give them in a list.")
+    return given

@@ -13,6 +13,7 @@ from itertools import chain
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.geometry.value_types import describe
 from rigidfluid.core.mesh.coarsen_surface import coarsen_surface
 from rigidfluid.core.mesh.coarsening import has_coarsened, is_due, relative_sizes
 from rigidfluid.core.mesh.curved_cells import CurvedCells
@@ -27,11 +28,12 @@ from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.mesh.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.size_interface import SizeField, with_fields, with_fields_at_rest
+from rigidfluid.core.model.replaceable import Replaceable
 from rigidfluid.core.model.state import FailedRemesh, Reference, State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.core.model.window import CLEARANCE
-from rigidfluid.errors import MeshError, StepRejected
+from rigidfluid.errors import MeshError, StepError, StepRejected
 
 TANGLED = 0.02
 """A mesh with a cell below this quality is not solved on."""
@@ -62,6 +64,8 @@ class MeshUpdater:
     by its name; the carrying over of the fluid is the stage "transfer".
     """
 
+    needs_remesh = Replaceable()
+
     def __init__(
         self,
         system: System,
@@ -77,7 +81,7 @@ class MeshUpdater:
         self._fields = tuple(fields)
         self._inserter = inserter
         self._watch = watch
-        self.needs_remesh: Callable[[State, Pose], bool] = self.is_worn
+        self.needs_remesh = self.is_worn
         self._motion: tuple[MeshMotion, CurvedCells]
         self._reference: Reference | None = None
         self._latest: tuple[Reference, Pose, FloatArray, float] | None = None
@@ -116,7 +120,7 @@ class MeshUpdater:
         """The same state, on a new mesh if a step to ``pose`` asks for one; with a mark where none can be made."""
         if state.is_on_new_mesh:
             return state
-        if self._waits(state.reference, state, pose) or not self.needs_remesh(state, pose):
+        if self._waits(state.reference, state, pose) or not self._is_asked_for(state, pose):
             return state
         try:
             mesh = self._remade(state, state.mesh)
@@ -133,6 +137,15 @@ class MeshUpdater:
             ledger=state.ledger.after_transfer(loss),
             remesh_failed=None,
         )
+
+    def _is_asked_for(self, state: State, pose: Pose) -> bool:
+        """Whether the rule of re-meshing, which may be the caller's, says so; raises StepError where it says
+        neither."""
+        answer = self.needs_remesh(state, pose)
+        if not isinstance(answer, bool | np.bool_):
+            remedy = "Let it return one of them."
+            raise StepError("mesh_updater.needs_remesh", describe(answer), "True or False", remedy)
+        return bool(answer)
 
     def quality(self, state: State) -> float:
         """Quality of the worst cell of the mesh where it is now, curved cells included [1]."""

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.replaceable import Replaceable
 from rigidfluid.core.model.state import Reference, State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Mesh, Pose
@@ -14,9 +14,11 @@ from rigidfluid.core.model.types import Mesh, Pose
 class NoMesh:
     """`Updater` of a mesh without cells."""
 
+    needs_remesh = Replaceable()
+
     def __init__(self, system: System) -> None:
         self._system = system
-        self.needs_remesh: Callable[[State, Pose], bool] = lambda state, pose: False
+        self.needs_remesh = lambda state, pose: False
 
     def first_mesh(self) -> Mesh:
         return Mesh.empty(self._system.dimension)

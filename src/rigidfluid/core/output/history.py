@@ -204,5 +204,5 @@ def reading(path: Path) -> Iterator[None]:
 def _require(field: str, names: Iterable[str], known: Iterable[str]) -> None:
     """Raise ArgumentError where one of the names is not known."""
     for name in names:
-        if name not in known:
+        if not isinstance(name, str) or name not in known:
             raise ArgumentError(field, repr(name), f"one of {', '.join(known)}", "Correct the name.")

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from os import PathLike
 from pathlib import Path
 
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.value_types import describe
+from rigidfluid.core.scene.validation import value_text
 from rigidfluid.errors import ArgumentError, SceneError
+from rigidfluid.regular_file import path_of
 
 
 def twist_row(dimension: int, velocity: Sequence[float] | None, angular_velocity: Sequence[float] | None) -> FloatArray:
@@ -27,14 +29,13 @@ def over_time(over: float | None, before: FloatArray, after: FloatArray) -> floa
     """Time in which a body goes from one twist (d+k,) to another, 0 for a jump; raises SceneError."""
     if over is None:
         return 0.0
-    if not (math.isfinite(over) and over > 0.0):
-        raise SceneError("over", over, "a time above 0", "Leave it out for a jump.")
+    number = _time("over", over, lambda value: 0.0 < value < math.inf, "a time above 0", "Leave it out for a jump.")
     spins = before[3:], after[3:]
     if len(before) == 6 and np.any(np.abs(np.cross(*spins)) > _PARALLEL * math.prod(map(np.linalg.norm, spins))):
         found = f"{spins[1].tolist()} over a time, of a body that turns by {spins[0].tolist()}"
         remedy = "Bring it to rest first, or leave out 'over'."
         raise SceneError("angular_velocity", found, "one about the axis that it turns about", remedy)
-    return float(over)
+    return number
 
 
 def time_of(key: str, value: float) -> float:
@@ -51,18 +52,34 @@ def folder_of(out: Path | None) -> Path | None:
     """Folder for the results, None for none; raises ArgumentError."""
     if out is None:
         return None
-    if not isinstance(out, str | PathLike) or not str(out):
-        raise ArgumentError("out", repr(out), "a path, or None", "Give '.' for the working folder.")
-    return Path(out)
+    return path_of("out", out, "a path, or None", "Give '.' for the working folder.")
 
 
-def _time(key: str, value: float, allows: Callable[[float], bool], allowed: str) -> float:
+def require_function(key: str, value: object, allowed: str) -> None:
+    """Raise ArgumentError unless a value can be called."""
+    if not callable(value):
+        raise ArgumentError(key, describe(value), allowed, "Give one that can be called.")
+
+
+def require_truth(key: str, value: object) -> None:
+    """Raise ArgumentError unless a value is True or False."""
+    if not isinstance(value, bool):
+        raise ArgumentError(key, describe(value), "True or False", "Give one of them.")
+
+
+def _time(
+    key: str,
+    value: float,
+    allows: Callable[[float], bool],
+    allowed: str,
+    remedy: str = "Give a time in the scene's unit.",
+) -> float:
     try:
-        number = float(value)
+        number = math.nan if isinstance(value, bool) else float(value)
     except (TypeError, ValueError, OverflowError):
         number = math.nan
     if not allows(number):
-        raise SceneError(key, value, allowed, "Give a time in the scene's unit.")
+        raise SceneError(key, value_text(value), allowed, remedy)
     return number
 
 
@@ -76,11 +93,13 @@ def _vector(key: str, value: Sequence[float] | None, length: int) -> FloatArray:
         return np.zeros(length)
     try:
         vector = np.asarray(value, dtype=np.float64).reshape(-1)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         vector = np.full(length, np.nan)
     if vector.shape != (length,) or not np.isfinite(vector).all():
         numbers = "1 finite number" if length == 1 else f"{length} finite numbers"
-        raise SceneError(key, value, numbers, "Give as many as the scene has dimensions, or axes to turn about.")
+        raise SceneError(
+            key, value_text(value), numbers, "Give as many as the scene has dimensions, or axes to turn about."
+        )
     return vector
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from rigidfluid.core.case.scene_model import Case
 from rigidfluid.core.model.foreign import no_exit
 from rigidfluid.core.output.history import History
+from rigidfluid.core.run.caller_input import require_function
 from rigidfluid.core.run.process import give_back_memory, one_openblas_thread, remembered_interrupt
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.run.summary import warnings_of
@@ -81,6 +82,7 @@ def simulate(
     once they are summed up, also where the run then raises what stopped it."""
     with one_openblas_thread(), no_exit(), closing(Simulation(case, out, resume, processes)) as simulation:
         if progress is not None:
+            require_function("progress", progress, "a function of a Progress, or None")
             simulation.observe(lambda now: progress(_progress(now)))
         try:
             with no_exit(), remembered_interrupt(simulation.system.backend.ranks) as interrupt_if_lost:

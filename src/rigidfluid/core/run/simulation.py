@@ -13,6 +13,7 @@ import numpy as np
 from rigidfluid.core.case.scene_model import Case, model_of
 from rigidfluid.core.coupling.contact_forces import contact_forces
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.value_types import describe
 from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_of
 from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.memory import told_memory
@@ -27,7 +28,16 @@ from rigidfluid.core.output.point_sets import PointSet, body_points, contact_poi
 from rigidfluid.core.output.records import StepCost, count_cells, joint_coordinates, records
 from rigidfluid.core.output.vtu import BODIES, CONTACTS
 from rigidfluid.core.output.writer import Writer, has_checkpoint
-from rigidfluid.core.run.caller_input import folder_of, interval_of, over_time, time_of, twist_row, wrench_row
+from rigidfluid.core.run.caller_input import (
+    folder_of,
+    interval_of,
+    over_time,
+    require_function,
+    require_truth,
+    time_of,
+    twist_row,
+    wrench_row,
+)
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.initial_state import initial_state
 from rigidfluid.core.run.mesh_keys import updater_of
@@ -42,7 +52,7 @@ from rigidfluid.core.setup.model import Model
 from rigidfluid.core.setup.named_files import file_digests
 from rigidfluid.core.setup.prescribed import PrescribedMotion, prescribed_motion
 from rigidfluid.described import Described, first_names
-from rigidfluid.errors import OutputError, SceneError, StepError
+from rigidfluid.errors import ArgumentError, OutputError, SceneError, StepError
 
 Observer = Callable[["Simulation"], None]
 
@@ -107,6 +117,7 @@ class Simulation(Described):
     ) -> None:
         self.model = model = model_of(case)
         out = folder_of(out)
+        require_truth("resume", resume)
         system = assemble(model)
         self._ranks = system.backend.ranks
         _refuse_lone_ranks(system.backend, processes)
@@ -122,7 +133,6 @@ class Simulation(Described):
         self._start, self._cpu_start = time.perf_counter(), time.process_time()
         self._writer: Writer | None = None
         self._observers: list[tuple[Schedule, Observer]] = []
-        self.state: State
         try:
             with told_memory():
                 if earlier is None:
@@ -138,6 +148,17 @@ class Simulation(Described):
     def system(self) -> System:
         """System that the run moves; `prescribe` and `restore` replace it."""
         return self.stepper.system
+
+    @property
+    def state(self) -> State:
+        """The latest accepted state."""
+        return self._state
+
+    @state.setter
+    def state(self, state: State) -> None:
+        if not isinstance(state, State):
+            raise ArgumentError("state", describe(state), "a State", "Leave it to the run; `restore` goes back.")
+        self._state = state
 
     @property
     def alone(self) -> bool:
@@ -208,7 +229,7 @@ class Simulation(Described):
         OutputError
             Where the disk refuses, or the simulation, which writes to a folder, was closed.
         """
-        self._refuse_closed()
+        self._refuse_closed("a step")
         if self.ended:
             remedy = "Move time.end in the scene."
             raise StepError("a step", f"one after the end, {self.time:g}", f"steps until {self.clock.end:g}", remedy)
@@ -223,7 +244,7 @@ class Simulation(Described):
 
     def go(self, until: float = np.inf) -> None:
         """Step until this time [time], or the scene's end; raises SceneError where it is no number."""
-        until = time_of("until", until)
+        until = max(time_of("until", until), 0.0)
         last = self.clock.last_tick if until >= self.clock.end else self.clock.tick_from(until)
         while self.state.tick < last:
             self.step()
@@ -231,8 +252,7 @@ class Simulation(Described):
     def observe(self, observer: Observer, every: float | None = None) -> None:
         """Call ``observer`` with this simulation after each accepted step, or after those that reach a multiple of
         ``every`` [time]; raises SceneError where that is no time above 0, or the observer no function."""
-        if not callable(observer):
-            raise SceneError("observer", repr(observer), "a function of the simulation", "Give one that can be called.")
+        require_function("observer", observer, "a function of the simulation")
         if every is not None:
             every = interval_of("every", every)
         self._observers.append((Schedule(self.clock, every, self.time), observer))
@@ -335,7 +355,11 @@ class Simulation(Described):
             schedule.latest = latest
 
     def finish(self, status: str) -> None:
-        """Sum up, in memory and on disk."""
+        """Sum up, in memory and on disk; raises SceneError where the status is no text, OutputError where the disk
+        refuses, or the simulation, which writes to a folder, was closed."""
+        self._refuse_closed("a summary")
+        if not isinstance(status, str):
+            raise ArgumentError("status", describe(status), "a text", "Say in a word how the run ended.")
         self.history.summary = summarise(self, status)
         self.history.summary["files"] = [] if self._writer is None else self._writer.files
         if self._writer is not None:
@@ -358,10 +382,10 @@ class Simulation(Described):
             "folder": None if self._writer is None else self._writer.out,
         }
 
-    def _refuse_closed(self) -> None:
+    def _refuse_closed(self, wanted: str) -> None:
         if self._writer is not None and self._writer.closed:
             remedy = "Make another Simulation, with resume=True to go on."
-            raise OutputError(str(self._writer.out), "a step after close()", "steps before it", remedy)
+            raise OutputError(str(self._writer.out), f"{wanted} after close()", f"{wanted} before it", remedy)
 
     def _begin(self, out: Path | None) -> None:
         self._elapsed_before = self._cpu_before = 0.0
@@ -500,7 +524,9 @@ def _bodies_now(
 
 
 def _refuse_lone_ranks(backend: FluidBackend, processes: int | None) -> None:
-    if processes not in (None, backend.ranks.size):
+    if processes is None:
+        return
+    if not isinstance(processes, int) or isinstance(processes, bool) or processes != backend.ranks.size:
         raise SceneError(
             "fluid.backend",
             f"{backend.name!r}, which runs in {backend.ranks.size}, and {processes} processes",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -13,8 +12,10 @@ from rigidfluid.core.contact.gap_changes import CLOSEST_APPROACH, WIDEST_OPENING
 from rigidfluid.core.contact.spot_check import is_due, spot_check
 from rigidfluid.core.coupling.scheme import Scheme
 from rigidfluid.core.coupling.schemes import scheme_of
+from rigidfluid.core.geometry.value_types import describe
 from rigidfluid.core.mesh.updater import Updater
 from rigidfluid.core.model.reduced_model import Coupling
+from rigidfluid.core.model.replaceable import Replaceable
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Pose
@@ -56,6 +57,8 @@ class Stepper:
     `longest`, or of `StepController.propose` with a tolerance.
     """
 
+    propose = Replaceable()
+
     def __init__(
         self,
         system: System,
@@ -68,7 +71,7 @@ class Stepper:
         self.system = system
         self.counts = Counts()
         self._controller = None if tolerance is None else StepController(clock, tolerance)
-        self.propose: Callable[[State], int] = self._controller.propose if self._controller else self.longest
+        self.propose = self._controller.propose if self._controller else self.longest
 
     @property
     def system(self) -> System:
@@ -207,9 +210,10 @@ class Stepper:
         Raises StepError where it is no level.
         """
         level = self.propose(state)
-        if not (isinstance(level, int | np.integer) and 0 <= level <= self._clock.levels):
+        is_number = isinstance(level, int | np.integer) and not isinstance(level, bool)
+        if not (is_number and 0 <= level <= self._clock.levels):
             allowed = f"a whole number from 0, time.step, to {self._clock.levels - 1}, time.shortest"
-            raise StepError("stepper.propose", level, allowed, "Let it return the number of halvings.")
+            raise StepError("stepper.propose", describe(level), allowed, "Let it return the number of halvings.")
         return int(level)
 
     def _changes_gaps_too_fast(self, state: State, pose: Pose) -> bool:

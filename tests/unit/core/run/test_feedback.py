@@ -216,11 +216,11 @@ def test_what_is_done_by_hand_is_resumed_to_the_last_bit(tmp_path: Path) -> None
     begun(tmp_path / "part", 0.2)
     resumed = Simulation(given, tmp_path / "part", resume=True)
     resumed.go()
+    resumed.finish("complete")
     resumed.close()
     for name in ("ball", "paddle"):
         np.testing.assert_array_equal(resumed.bodies[name].position, whole.bodies[name].position)
     assert energies(resumed) == pytest.approx(energies(whole), rel=0.0, abs=0.0, nan_ok=True)
-    resumed.finish("complete")
     assert resumed.history.summary["by_hand"]["applied"] == {"ball": [0.1, 0.0, 0.01]}
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from rigidfluid import load_results, load_scene
 from rigidfluid.api import ArgumentError, OutputError, SceneError, Simulation, StepError, run, scene_from_dict
 
 BALL = {"name": "ball", "type": "sphere", "radius": 0.1, "density": 2.0, "position": [0.3, 0.5]}
@@ -171,7 +173,12 @@ def test_a_closed_run_writes_no_more(tmp_path: Path) -> None:
         first.step()
     second.step()
     assert len(second.history.bodies["time"]) == 2
+    second.finish("complete")
     second.close()
+    summary = (tmp_path / "summary.json").read_bytes()
+    with pytest.raises(OutputError, match=r"found a summary after close\(\)"):
+        first.finish("complete")
+    assert (tmp_path / "summary.json").read_bytes() == summary
 
 
 def test_another_scene_s_save_is_refused() -> None:
@@ -181,20 +188,20 @@ def test_another_scene_s_save_is_refused() -> None:
     simulation.restore(Simulation(scene(BALL, wet=False)).save())
 
 
-@pytest.mark.parametrize("every", [0, -1.0, float("nan"), float("inf"), 10**400, "x", [1.0]])
+@pytest.mark.parametrize("every", [0, -1.0, float("nan"), float("inf"), 10**400, "x", [1.0], True])
 def test_observers_are_called_after_a_time_above_zero(every: Any) -> None:
     simulation = Simulation(scene(BALL, wet=False))
     with pytest.raises(SceneError, match=r"every: found .*; allowed is a finite time above 0"):
         simulation.observe(lambda _: None, every)
 
 
-@pytest.mark.parametrize("until", [float("nan"), "x", 10**400, None])
+@pytest.mark.parametrize("until", [float("nan"), "x", 10**400, None, True])
 def test_a_run_goes_until_a_time_alone(until: Any) -> None:
     with pytest.raises(SceneError, match=r"until: found .*; allowed is a number"):
         Simulation(scene(BALL, wet=False)).go(until)
 
 
-@pytest.mark.parametrize("level", [-1, 10**6, 0.5, float("nan"), None])
+@pytest.mark.parametrize("level", [-1, 10**6, 0.5, float("nan"), None, True])
 def test_a_controller_gives_levels_alone(level: Any) -> None:
     simulation = Simulation(scene(BALL, wet=False))
     simulation.stepper.propose = lambda _: level
@@ -220,7 +227,54 @@ def test_other_than_scenes_and_models_are_not_run(case: Any) -> None:
         run(case)
 
 
-@pytest.mark.parametrize("out", ["", 5, b"x"])
+@pytest.mark.parametrize("out", ["", 5, b"x", "\0", "\ud800"])
 def test_a_folder_is_a_path(out: Any) -> None:
     with pytest.raises(ArgumentError, match=r"out: found .*; allowed is a path, or None"):
         Simulation(scene(BALL, wet=False), out)
+
+
+def test_nothing_is_done_until_a_time_before_the_start() -> None:
+    simulation = Simulation(scene(BALL, wet=False))
+    simulation.go(float("-inf"))
+    assert simulation.time == 0.0
+
+
+WRONG: dict[str, Callable[[Simulation], object]] = {
+    "propose": lambda now: setattr(now.stepper, "propose", 5),
+    "needs_remesh": lambda now: setattr(now.mesh_updater, "needs_remesh", 5),
+    "state": lambda now: setattr(now, "state", None),
+    "force": lambda now: now.apply("ball", force=[10**400, 0]),
+    "over": lambda now: now.prescribe("paddle", over="x"),
+    "status": lambda now: now.finish(3),
+    "resume": lambda now: Simulation(now.model, None, "yes"),
+    "fluid.backend": lambda now: Simulation(now.model, processes=np.ones((1, 1))),
+    "table": lambda now: now.history.table([]),
+    "progress": lambda now: run(now.model, progress=5),
+    "overrides": lambda now: load_scene("scene.toml", 3),
+    "overrides, no list": lambda now: load_scene("scene.toml", "time.end=1"),
+    "overrides, no texts": lambda now: load_scene("scene.toml", [3]),
+    "scene": lambda now: scene_from_dict(None),
+    "folder": lambda now: load_results(5),
+    "path": lambda now: load_scene("\0"),
+}
+
+
+@pytest.mark.parametrize("call", WRONG)
+def test_values_of_a_wrong_kind_are_refused(call: str) -> None:
+    simulation = Simulation(scene(BALL, DRIVEN, wet=False))
+    with pytest.raises(SceneError, match=rf"{call.partition(',')[0]}: found .*; allowed is"):
+        WRONG[call](simulation)
+
+
+@pytest.mark.parametrize("answer", [None, "x", 1])
+def test_a_rule_of_re_meshing_says_true_or_false(answer: Any) -> None:
+    simulation = Simulation(scene(BALL))
+    simulation.step()
+    simulation.mesh_updater.needs_remesh = lambda state, pose: answer
+    with pytest.raises(StepError, match=r"mesh_updater.needs_remesh: found .*; allowed is True or False"):
+        simulation.step()
+
+
+def test_a_folder_of_results_whose_name_is_too_long() -> None:
+    with pytest.raises(OutputError, match=r"found File name too long; allowed is the folder of a run"):
+        load_results("x" * 5000)
