@@ -5,6 +5,7 @@ from __future__ import annotations
 from importlib.metadata import EntryPoint
 from typing import Any
 
+from rigidfluid.error_text import error_text
 from rigidfluid.errors import PluginError
 
 
@@ -21,6 +22,6 @@ def load(point: EntryPoint, subject: str) -> Any:
         return point.load()
     except ImportError:
         raise
-    except (Exception, SystemExit) as error:  # foreign code may raise anything
-        found = f"{type(error).__name__}: {error}"
+    except (Exception, SystemExit, GeneratorExit) as error:  # foreign code may raise anything
+        found = f"{type(error).__name__}: {error_text(error)}"
         raise PluginError(subject, found, "a module that can be imported", "Mend the plug-in.") from error

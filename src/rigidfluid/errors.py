@@ -37,9 +37,12 @@ class RigidfluidError(Exception):
     ----------
     place : str
         Where it stands in a file, as ``scene.toml:12``, or on the command line; empty where that is not known.
+    source : str
+        The part of a plug-in that raised it, and by which method; empty where it was rigidfluid.
     """
 
     place = ""
+    source = ""
 
     def __init__(self, subject: str, found: object, allowed: str | None, remedy: str) -> None:
         self.subject = subject
@@ -50,15 +53,19 @@ class RigidfluidError(Exception):
         super().__init__(f"{subject}: {statement}. {remedy}")
 
     def __str__(self) -> str:
-        return f"{self.place}: {super().__str__()}" if self.place else super().__str__()
+        raised = f" Raised by {self.source}." if self.source else ""
+        return f"{self.place}: {super().__str__()}{raised}" if self.place else super().__str__() + raised
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle the error by its four parts and its place, so that it can pass between processes."""
-        return type(self), (self.subject, str(self.found), self.allowed, self.remedy), {"place": self.place}
+        """Pickle the error by its four parts, its place and its source, so that it can pass between processes."""
+        origin = {"place": self.place, "source": self.source}
+        return type(self), (self.subject, str(self.found), self.allowed, self.remedy), origin
 
     def renamed(self, name: Callable[[str], str]) -> Self:
         """The same error about the subject that ``name`` makes of this one."""
-        return type(self)(name(self.subject), self.found, self.allowed, self.remedy)
+        renamed = type(self)(name(self.subject), self.found, self.allowed, self.remedy)
+        renamed.source = self.source
+        return renamed
 
 
 class SceneError(RigidfluidError):

@@ -23,6 +23,7 @@ from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Mechanism, Part
 from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.entry_points import load, origin
+from rigidfluid.error_text import error_text, shown
 from rigidfluid.errors import PluginError
 
 GROUP = "rigidfluid"
@@ -117,7 +118,9 @@ class Registry:
                 _register(manager, load(point, f"plug-in {plugin}"), plugin)
                 entries += _entries(manager, plugin, origin(point))
             except (ImportError, PluginError) as error:
-                unloaded.append(Unloaded(point.name, origin(point), str(error).removeprefix(f"plug-in {plugin}: ")))
+                unloaded.append(
+                    Unloaded(point.name, origin(point), error_text(error).removeprefix(f"plug-in {plugin}: "))
+                )
         entries.sort(key=lambda entry: KINDS.index(entry.kind))
         _refuse_doubles(entries)
         return cls(tuple(entries), tuple(unloaded))
@@ -221,18 +224,20 @@ def _offered(kind: Kind[Any], function: Callable[[], Any], plugin: str) -> list[
     subject, allowed = f"plug-in {plugin}", f"a list of subclasses of {kind.interface.__name__}"
     try:
         offered = function()
-    except (Exception, SystemExit) as error:  # foreign code may raise anything
-        found = f"{type(error).__name__}: {error}, in {kind.hook}"
+    except (Exception, SystemExit, GeneratorExit) as error:  # foreign code may raise anything
+        found = f"{type(error).__name__}: {error_text(error)}, in {kind.hook}"
         raise PluginError(subject, found, allowed, "Mend the plug-in.") from error
     if not isinstance(offered, list | tuple):
-        raise PluginError(subject, f"{offered!r} from {kind.hook}", allowed, "Return a list.")
+        raise PluginError(subject, f"{shown(offered)} from {kind.hook}", allowed, "Return a list.")
     return list(offered)
 
 
 def _check_class(kind: Kind[Any], part: Any, plugin: str) -> None:
     subject, interface = f"plug-in {plugin}", kind.interface.__name__
     if not _derives(part, kind.interface):
-        raise PluginError(subject, f"{part!r} as a {kind.title}", f"a subclass of {interface}", "Derive it from there.")
+        raise PluginError(
+            subject, f"{shown(part)} as a {kind.title}", f"a subclass of {interface}", "Derive it from there."
+        )
     if part.__abstractmethods__:
         found = f"{part.__name__} without {', '.join(sorted(part.__abstractmethods__))}"
         raise PluginError(subject, found, f"a complete {interface}", "Write what is missing.")

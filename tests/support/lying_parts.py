@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -19,6 +20,7 @@ from rigidfluid.core.model.interfaces import Component, ForceLaw, Mechanism, Par
 from rigidfluid.core.model.types import Pose, Twist
 from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.domains.box import Box
+from rigidfluid.errors import SceneError, StepRejected
 from rigidfluid.joints.hinge import Hinge
 from rigidfluid.registry import (
     BODY,
@@ -82,9 +84,16 @@ class Dumbbell(Mechanism):
 
 def raising(error: BaseException) -> Change:
     def lie(_: Any) -> Any:
-        raise error
+        raise copy(error)
 
     return lie
+
+
+class Wordless(Exception):
+    """An error that has no words."""
+
+    def __str__(self) -> str:
+        raise RuntimeError("no words")
 
 
 def everywhere(value: float) -> Change:
@@ -100,6 +109,13 @@ ANY: dict[str, Change] = {
     "SystemExit": raising(SystemExit(0)),
 }
 NONE: dict[str, Change] = {"None": lambda _: None}
+RAISED: dict[str, Change] = {
+    "Wordless": raising(Wordless()),
+    "GeneratorExit": raising(GeneratorExit()),
+    "MemoryError": raising(MemoryError()),
+    "SceneError": raising(SceneError("body", 1, "another", "Lie on.")),
+    "StepRejected": raising(StepRejected("a step", 1, "another", "Lie on.")),
+}
 ROWS: dict[str, Change] = (
     ANY
     | NONE
@@ -107,6 +123,8 @@ ROWS: dict[str, Change] = (
         "list": lambda answer: answer.tolist(),
         "complex": lambda answer: answer.astype(complex),
         "object": lambda answer: answer.astype(object),
+        "matrix": lambda answer: answer.view(np.matrix),
+        "masked": lambda answer: np.ma.array(answer, mask=True),
         "shape": lambda answer: np.concatenate([answer, answer])[..., None],
         "NaN": everywhere(np.nan),
         "infinite": everywhere(np.inf),
@@ -198,6 +216,7 @@ POSE: dict[str, Change] = (
 )
 CHANGES: dict[tuple[Kind[Any], type[Part], str], dict[str, Change]] = {
     (FORCE_LAW, Springy, "force"): ROWS
+    | RAISED
     | {
         "half": lambda answer: 0.5 * answer,
         "askew": lambda answer: answer[:, ::-1] + 1.0,
@@ -213,14 +232,16 @@ CHANGES: dict[tuple[Kind[Any], type[Part], str], dict[str, Change]] = {
         "negative": lambda _: (-1.0,),
         "texts": lambda _: ("a lie",),
     },
-    (DETECTOR, SphereDetector, "detect"): DETECTED,
+    (DETECTOR, SphereDetector, "detect"): DETECTED | RAISED,
+    (DETECTOR, SphereDetector, "exact_for"): {"number": lambda _: 3, "ValueError": ANY["ValueError"]},
     (DETECTOR, SphereDetector, "preferred_reach"): NUMBER | {"infinite": lambda _: "inf"},
-    (BODY, Sphere, "volume"): NUMBER,
-    (BODY, Sphere, "bounding_radius"): NUMBER,
+    (BODY, Sphere, "volume"): NUMBER | {"double": lambda answer: 2.0 * answer, "half": lambda answer: 0.5 * answer},
+    (BODY, Sphere, "bounding_radius"): NUMBER | {"half": lambda answer: 0.5 * answer},
     (BODY, Sphere, "radius"): {key: lie for key, lie in NUMBER.items() if key != "None"},
-    (BODY, Sphere, "unit_inertia"): ROWS | {"negative": lambda answer: -answer},
-    (BODY, Sphere, "signed_distance"): ROWS | {"inside": lambda answer: answer - 10.0},
-    (BODY, Sphere, "closest_point"): ROWS,
+    (BODY, Sphere, "unit_inertia"): ROWS | {"negative": lambda answer: -answer, "large": lambda answer: 9.0 * answer},
+    (BODY, Sphere, "signed_distance"): ROWS
+    | {"inside": lambda answer: answer - 10.0, "flipped": lambda answer: -answer, "short": lambda answer: 0.9 * answer},
+    (BODY, Sphere, "closest_point"): ROWS | RAISED | {"centre": lambda answer: 0.0 * answer},
     (BODY, Sphere, "sample_surface"): ROWS | {"none": lambda answer: answer[:0]},
     (DOMAIN, Box, "pieces"): LIST,
     (DOMAIN, Box, "extent"): ANY
@@ -235,8 +256,10 @@ CHANGES: dict[tuple[Kind[Any], type[Part], str], dict[str, Change]] = {
     (JOINT, Hinge, "constraints"): LIST,
     (JOINT, Hinge, "springs"): {key: lie for key, lie in LIST.items() if key not in ("empty", "classes")},
     (JOINT, Hinge, "axes"): ROWS,
-    (FLUID_BACKEND, Dry, "initial"): STATE,
-    (FLUID_BACKEND, Dry, "advance"): STEP,
+    (FLUID_BACKEND, Dry, "initial"): STATE | {"negative energy": lambda answer: (answer[0], -1.0)},
+    (FLUID_BACKEND, Dry, "advance"): STEP
+    | RAISED
+    | {"negative energy": lambda answer: replace(answer, kinetic_energy=-1.0)},
     (FLUID_BACKEND, Dry, "unknowns"): NUMBER | {"negative": lambda _: -7},
     (FLUID_BACKEND, Dry, "memory"): {
         key: lie for key, lie in STATE.items() if "energy" not in key and key not in ("state", "objects")
@@ -356,6 +379,8 @@ def _changed(honest: Any, change: Change) -> Any:
         return property(lambda part: change(honest.fget(part)))
     if isinstance(honest, cached_property):
         return property(lambda part: change(honest.func(part)))
+    if isinstance(honest, classmethod):
+        return classmethod(lambda part, *given: change(honest.__func__(part, *given)))
     return lambda part, *given: change(honest(part, *given))
 
 

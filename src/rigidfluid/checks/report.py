@@ -34,6 +34,7 @@ from rigidfluid.core.case.scene_model import Case, model_of
 from rigidfluid.core.contact.spot_check import spot_check
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.foreign import no_exit
+from rigidfluid.core.model.memory import told_memory
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts
 from rigidfluid.core.setup.assemble import assemble, gap_reach
@@ -88,7 +89,7 @@ class Report:
 def check(case: Case) -> Report:
     """Ask all questions of a scene or a model, without making a mesh; raises RigidfluidError if it cannot be built at
     all."""
-    with no_exit():
+    with no_exit(), told_memory():
         model = model_of(case)
         system = assemble(model)
         start = initial_contacts(system.domain, model.exact_detector, system.bodies, system.pose, gap_reach(system))

@@ -12,6 +12,7 @@ from rigidfluid.core.case.part_tables import check_part_tables
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.case.time_factor import read_time_tables
 from rigidfluid.core.geometry.value_types import describe
+from rigidfluid.core.model.memory import told_memory
 from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.earlier import tables_now
 from rigidfluid.core.scene.overrides import override
@@ -51,6 +52,7 @@ def scene_from_dict(data: Mapping[str, Any]) -> Scene:
     return scene
 
 
+@told_memory()
 def scene_of_results(data: Mapping[str, Any]) -> Scene:
     """Scene of stored results, which may come from a place where other packages are installed.
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 
 from rigidfluid.core.contact.detection import detection_by
 from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.model.interfaces import Body, Detector
+from rigidfluid.errors import PluginError
 from rigidfluid.registry import DETECTOR, Registry
 
 
@@ -15,10 +17,14 @@ def choose_detector(
 ) -> tuple[type[Detector], str]:
     """Cheapest installed detector that is exact for ``bodies`` between ``pieces``, and why it is chosen, in words.
 
-    Without ``mesh`` none that needs one is asked. The built-in `brute_force` takes all shapes.
+    Without ``mesh`` none that needs one is asked, and none is chosen that fails when it is. The built-in `brute_force`
+    takes all shapes.
     """
-    usable = [part for part in registry.installed(DETECTOR) if mesh or not detection_by(part).on_mesh]
-    reasons = {part: reason for part in usable if (reason := part.exact_for(bodies, pieces))}
+    reasons = {}
+    for part in registry.installed(DETECTOR):
+        with suppress(PluginError):  # it stops those who name it
+            if (mesh or not detection_by(part).on_mesh) and (reason := part.exact_for(bodies, pieces)):
+                reasons[part] = reason
     cheapest = min(reasons, key=lambda part: part.cost)
     return cheapest, f"chosen as {reasons[cheapest]}"
 

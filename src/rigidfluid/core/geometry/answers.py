@@ -55,7 +55,7 @@ def _are_numbers(answer: Any, shape: tuple[int, ...]) -> bool:
 
 def refuse_other_shape(answer: Any, shape: tuple[int, ...], name: str = "", kinds: str = "fiu") -> None:
     """Raise `Wrong` unless it is an array of a ``shape``, of numbers of these ``kinds``, as NumPy names them."""
-    if not (isinstance(answer, np.ndarray) and answer.dtype.kind in kinds and answer.shape == shape):
+    if not (type(answer) is np.ndarray and answer.dtype.kind in kinds and answer.shape == shape):
         numbers = {"fiu": "real numbers", "iu": "whole numbers", "b": "truth values"}[kinds]
         raise Wrong(f"{name} {describe(answer)}".strip(), f"an array of {numbers} of shape {shape}")
 

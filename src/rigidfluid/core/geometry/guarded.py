@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 from rigidfluid.core.geometry.interrupts import is_interrupt
 from rigidfluid.core.geometry.value_types import refuse_other_types
 from rigidfluid.core.geometry.wrong import Wrong
+from rigidfluid.error_text import error_text
 from rigidfluid.errors import PluginError, RigidfluidError, StepRejected
 
 Check = Callable[..., None]
@@ -56,7 +57,7 @@ class Guarded(ABCMeta):
                 if plain:
                     continue
             if not (getattr(member, "__isabstractmethod__", False) or hasattr(_function_of(member), "__guarded__")):
-                member = _guarded_member(cls, key, member, _declared_by(interface))
+                member = _guarded_member(cls, key, member, _declared_by(interface), isinstance(interface, classmethod))
                 setattr(cls, key, member)
             cls._outermost[key] = _function_of(member)
 
@@ -89,8 +90,9 @@ def _declared_by(member: Any) -> Any:
     return getattr(_function_of(member), "__gives__", None)
 
 
-def _guarded_member(cls: type, key: str, member: Any, check: Check) -> Any:
-    """The member of a class by this name, its function guarded."""
+def _guarded_member(cls: type, key: str, member: Any, check: Check, is_of_class: bool) -> Any:
+    """The member of a class by this name, its function guarded; ``is_of_class``: asked of the class, however it is
+    written."""
     function = _function_of(member)
     if isinstance(member, property):
         return property(_guarded(function, key, check), member.fset, member.fdel, member.__doc__)
@@ -98,14 +100,15 @@ def _guarded_member(cls: type, key: str, member: Any, check: Check) -> Any:
         kept = cached_property(_guarded(function, key, check))
         kept.__set_name__(cls, key)
         return kept
-    if isinstance(member, classmethod):
+    if isinstance(member, classmethod) or (is_of_class and isinstance(member, FunctionType)):
         return classmethod(_guarded(function, key, check))
     if not isinstance(member, FunctionType):  # a callable, or what is none
 
         def function(_: Any, *given: Any, **named: Any) -> Any:
             return member(*given, **named)
 
-    return _guarded(function, key, check)
+    guarded = _guarded(function, key, check)
+    return classmethod(guarded) if is_of_class else guarded
 
 
 def _guarded(function: Callable[..., Any], key: str, check: Check) -> Callable[..., Any]:
@@ -118,9 +121,10 @@ def _guarded(function: Callable[..., Any], key: str, check: Check) -> Callable[.
             kind: Any = part if isinstance(part, type) else type(part)
             if kind._outermost.get(key) is asked:
                 check(answer, part, *given, **named)
-        except (RigidfluidError, MemoryError):
+        except (RigidfluidError, MemoryError) as error:
+            _add_source(error, part, key)
             raise
-        except (Exception, SystemExit) as error:
+        except (Exception, SystemExit, GeneratorExit) as error:
             raise part_error(part, key, error) from error
         return answer
 
@@ -132,10 +136,27 @@ def _guarded(function: Callable[..., Any], key: str, check: Check) -> Callable[.
 def _blamed(cls: type, key: str) -> Iterator[None]:
     try:
         yield
-    except (RigidfluidError, MemoryError):  # say enough by themselves, or are told by the run
+    except (RigidfluidError, MemoryError) as error:  # the run tells of memory
+        _add_source(error, cls, key)
         raise
-    except (Exception, SystemExit) as error:
+    except (Exception, SystemExit, GeneratorExit) as error:
         raise part_error(cls, key, error) from error
+
+
+def is_foreign(cls: type) -> bool:
+    """Whether a class of parts is not one of rigidfluid itself."""
+    return not str(cls.__module__).startswith("rigidfluid.")
+
+
+def _add_source(error: RigidfluidError | MemoryError, part: Any, key: str) -> None:
+    """Say in an error by which method or attribute ``key`` of a foreign part, or its class, it came."""
+    cls = part if isinstance(part, type) else type(part)
+    if not is_foreign(cls):
+        return
+    if isinstance(error, MemoryError):
+        error.args = error.args or (f"{named(cls)}, {key}",)
+    elif not error.source and named(cls) not in error.subject:
+        error.source = f"{named(cls)}, {key}"
 
 
 def part_error(part: Any, key: str, error: BaseException) -> RigidfluidError | KeyboardInterrupt:
@@ -153,5 +174,7 @@ def part_error(part: Any, key: str, error: BaseException) -> RigidfluidError | K
             )
         return PluginError(subject, error.found, error.allowed, _REMEDY)
     frame, line = list(walk_tb(error.__traceback__))[-1]
-    found = f"{type(error).__name__}: {error}, raised in module {frame.f_globals.get('__name__')}, line {line}"
+    found = (
+        f"{type(error).__name__}: {error_text(error)}, raised in module {frame.f_globals.get('__name__')}, line {line}"
+    )
     return PluginError(subject, found, "an answer, or an error of rigidfluid", _REMEDY)

@@ -11,6 +11,7 @@ from typing import Any, ClassVar, Literal, Union, get_args, get_origin, get_type
 import numpy as np
 
 from rigidfluid.core.geometry.wrong import Wrong
+from rigidfluid.error_text import shown
 
 
 def refuse_other_types(cls: type, part: Any) -> None:
@@ -45,8 +46,9 @@ def _annotated(cls: type) -> tuple[tuple[str, Any, bool], ...]:
 def describe(value: Any) -> str:
     """Describe a value in few words: its type, and its shape or text."""
     if isinstance(value, np.ndarray):
-        return f"an array of {value.dtype} of shape {value.shape}"
-    text = repr(value)
+        kind = "an array" if type(value) is np.ndarray else f"a {type(value).__name__}, a kind of array,"
+        return f"{kind} of {value.dtype} of shape {value.shape}"
+    text = shown(value)
     return f"{type(value).__name__} {text if len(text) < 60 else text[:56] + ' ...'}"
 
 

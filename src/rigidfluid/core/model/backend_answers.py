@@ -21,7 +21,7 @@ def state(answer: Any, *_: Any, **__: Any) -> None:
     refuse_others(answer, Mapping)
     for name, values in answer.items():
         refuse_others(name, str, "name")
-        if not (isinstance(values, np.ndarray) and values.dtype.kind in "fiub"):
+        if not (type(values) is np.ndarray and values.dtype.kind in "fiub"):
             raise Wrong(f"{name} {describe(values)}", "arrays of numbers")
 
 
@@ -40,10 +40,16 @@ def state_and_energy(answer: Any, *_: Any, **__: Any) -> None:
     refuse_no_number(answer[1], "energy", shorter=True)
 
 
+def state_and_kinetic(answer: Any, *_: Any, **__: Any) -> None:
+    """Refuse what is no state and a kinetic energy that a flow may have."""
+    state_and_energy(answer)
+    _refuse_negative(answer[1], "kinetic energy")
+
+
 def struck(answer: Any, part: Any, mesh: Any, pose: Any, twist: Twist, step: Step) -> None:
     """Refuse what is no state, kinetic energy and twist of all motions."""
     _refuse_other_length(answer, 3)
-    state_and_energy(answer[:2])
+    state_and_kinetic(answer[:2])
     _refuse_other_twist(answer[2], step)
 
 
@@ -58,6 +64,7 @@ def advance(answer: Any, part: Any, fluid: Any, mesh: Any, step: Step) -> None:
     refuse_other_rows(answer.link_force, step.links.rate.shape, "link_force", shorter=True)
     for name in _ENERGIES:
         refuse_no_number(getattr(answer, name), name, shorter=True)
+    _refuse_negative(answer.kinetic_energy, "kinetic_energy")
     if answer.stress_power is not None:
         refuse_no_number(answer.stress_power, "stress_power", shorter=True)
 
@@ -85,6 +92,11 @@ def probes(answer: Any, part: Any, fluid: Any, mesh: Any, points: Any) -> None:
     _refuse_other_length(answer, 2)
     refuse_other_rows(answer[0], points.shape, "velocity", shorter=True)
     refuse_other_rows(answer[1], points.shape[:1], "pressure", shorter=True)
+
+
+def _refuse_negative(energy: float, name: str) -> None:
+    if energy < 0.0:
+        raise Wrong(f"{name} {energy}", "an energy of 0 or more")
 
 
 def _refuse_other_length(answer: Any, length: int) -> None:

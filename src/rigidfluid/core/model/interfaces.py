@@ -373,7 +373,7 @@ class FluidBackend(Part):
         return FactorisedExtension(stiffness, held)
 
     @abstractmethod
-    @gives(backends.state_and_energy)
+    @gives(backends.state_and_kinetic)
     def initial(self, mesh: Mesh, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
         """Fluid at the start, by `FluidProblem.initial`, and its kinetic energy [energy].
 

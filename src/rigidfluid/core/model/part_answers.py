@@ -131,7 +131,7 @@ def ranges(answer: Any, part: Any) -> None:
 
 def energies(answer: Any, part: Any, contacts: Contacts) -> None:
     """Refuse what are no energies; they are infinite in overlap where the law says so."""
-    if isinstance(answer, np.ndarray) and part.overlap == "unbounded":
+    if type(answer) is np.ndarray and part.overlap == "unbounded":
         answer = np.where(answer == inf, 0.0, answer)
     refuse_other_rows(answer, contacts.gap.shape, shorter=True)
 

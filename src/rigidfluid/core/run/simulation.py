@@ -118,7 +118,8 @@ class Simulation(Described):
         self.model = model = model_of(case)
         out = folder_of(out)
         require_truth("resume", resume)
-        system = assemble(model)
+        with told_memory():
+            system = assemble(model)
         self._ranks = system.backend.ranks
         _refuse_lone_ranks(system.backend, processes)
         self.clock = Clock.for_steps(model.time.step, model.time.shortest, model.time.end)

@@ -22,12 +22,14 @@ def stuck(system: System, state: State, rejection: StepRejected, time: float, sh
     for opening_gap, leaving, opening in _near_openings(system, state):
         if opening_gap < gap:
             body, gap, surface, remedy = leaving, opening_gap, repr(opening), _LEAVES
-    return StepError(
+    error = StepError(
         f"{rejection.subject} at time {time:g}",
         f"{rejection.found}, even with a step of {shortest:g}; body {body} is {gap:.3g} from {surface}",
         rejection.allowed,
         f"{remedy} What was computed until then is kept, and --resume goes on from the last output.",
     )
+    error.source = rejection.source
+    return error
 
 
 def _near_openings(system: System, state: State) -> list[tuple[float, str, str]]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.model.types import Contacts, Pose
+from rigidfluid.core.setup.shape_checks import check_shapes
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
@@ -29,8 +30,9 @@ end the whole process."""
 
 
 def check_geometry(model: Model, pose: Pose) -> None:
-    """Refuse, with SceneError, bodies that overlap each other or a surface of the domain or are lost in it at their
-    starting ``pose``, and a mesh too coarse for a gap."""
+    """Refuse shapes that contradict themselves, with PluginError, and, with SceneError, bodies that overlap each other
+    or a surface of the domain or are lost in it at their starting ``pose``, and a mesh too coarse for a gap."""
+    check_shapes(model.shapes)
     _check_extent(model)
     mesh = model.fluid.mesh
     reach = _coarsest_gap(mesh, model.shapes) if mesh else 0.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,7 +13,8 @@ from dry_scenes import ball, dry_scene
 import rigidfluid
 from rigidfluid.checks import check
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.errors import PluginError
+from rigidfluid.errors import PluginError, SceneError
+from rigidfluid.registry import Registry
 
 Install = Callable[..., Path]
 
@@ -57,3 +59,48 @@ def test_an_error_of_a_part_leaves_a_summary(install: Install, law: str, tmp_pat
         rigidfluid.run(scene, tmp_path)
     assert isinstance(told.value.__cause__, KeyError)
     assert "KeyError: 'lost'" in json.loads((tmp_path / "summary.json").read_text())["status"]
+
+
+DETECTOR = """
+    from rigidfluid.api import Detector, hookimpl
+    from rigidfluid.detectors.sphere import SphereDetector
+
+    class Careless(SphereDetector):
+        name = "careless"
+        cost = 0.0
+        {statement}
+
+    @hookimpl
+    def rigidfluid_detectors():
+        return [Careless]
+"""
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "exact_for = classmethod(lambda cls, bodies, pieces: 1 / 0)",
+        "exact_for = classmethod(lambda cls, bodies, pieces: 3)",
+        "exact_for = lambda self, bodies, pieces: self.walls",
+        "exact_for = True",
+    ],
+)
+def test_a_detector_that_fails_when_it_is_asked_stops_those_who_name_it(install: Install, statement: str) -> None:
+    install(DETECTOR.format(statement=statement))
+    check(meeting(law="centre", range=0.05, epsilon=1e-4, epsilon_wall=1e-4))
+    with pytest.raises(PluginError, match="detector 'careless', exact_for: found"):
+        check(meeting(law="centre", range=0.05, epsilon=1e-4, epsilon_wall=1e-4, detector="careless"))
+
+
+def test_an_error_of_rigidfluid_says_by_which_part_it_came(install: Install, law: str) -> None:
+    raised = "from rigidfluid.api import SceneError; raise SceneError('a', 1, 'another', 'Mend it.')"
+    scene = springy(install, law, FORCE, raised)
+    with pytest.raises(SceneError, match=r"a: found 1; .* Raised by force law 'springy', force\.") as told:
+        check(scene)
+    assert str(pickle.loads(pickle.dumps(told.value))) == str(told.value)
+
+
+def test_a_hook_that_interrupts_is_an_interrupt(install: Install) -> None:
+    install("from rigidfluid.api import hookimpl\n@hookimpl\ndef rigidfluid_bodies():\n    raise KeyboardInterrupt")
+    with pytest.raises(KeyboardInterrupt):
+        Registry.load()
