@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import functools
+import io
 import os
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from numpy.random import Generator
 
 from attacks.damages import DAMAGES, cut_off, no_bytes, one_bit, some_bytes, words
 from attacks.small_runs import TABLES
+from rigidfluid.core.output.sealed_file import seal
 
 STATE = "state.h5"
 _OTHERS = ("summary.json", "fields.pvd", "run.lock", "fields/000000.vtu")
@@ -35,6 +37,9 @@ class Folders:
 Harm = Callable[[Folders, Generator], str]
 """Damages a folder, and says how."""
 
+Edit = Callable[[h5py.File, str], object]
+"""Changes what has a name in a file."""
+
 
 def damage_bytes(folders: Folders, random: Generator, group: str) -> str:
     """Damage of one group to the checkpoint's bytes."""
@@ -47,12 +52,18 @@ def damage_bytes(folders: Folders, random: Generator, group: str) -> str:
 def edit_checkpoint(folders: Folders, random: Generator) -> str:
     """Change something in the checkpoint by h5py."""
     with h5py.File(folders.to_break / STATE, "r+") as file:
-        names: list[str] = []
-        file.visit(names.append)
-        name = names[int(random.integers(0, len(names)))]
-        edit = _EDITS[int(random.integers(0, len(_EDITS)))]
-        edit(file, name)
-    return f"{edit.__name__} {name}"
+        return _edited(file, random, _EDITS)
+
+
+def edit_and_seal(folders: Folders, random: Generator) -> str:
+    """Make of the checkpoint what no run writes, and renew its digest."""
+    path = folders.to_break / STATE
+    image = io.BytesIO(path.read_bytes())
+    with h5py.File(image, "r+") as file:
+        said = _edited(file, random, _TELLING_EDITS)
+    seal(image)
+    path.write_bytes(image.getbuffer())
+    return said
 
 
 def change_a_table(folders: Folders, random: Generator) -> str:
@@ -86,11 +97,22 @@ def swap_files(folders: Folders, random: Generator) -> str:
 HARMS: Mapping[str, Harm] = {
     **{f"state.h5: {group}": functools.partial(damage_bytes, group=group) for group in DAMAGES},
     "state.h5: edited by h5py": edit_checkpoint,
+    "state.h5: edited, its digest renewed": edit_and_seal,
     "tables: edited, cut, removed": change_a_table,
     "files that changed places": swap_files,
     "summary, list of fields, lock": change_another_file,
 }
 """Kinds of damage to a run's folder, by the words of a table."""
+
+
+def _edited(file: h5py.File, random: Generator, edits: Sequence[Edit]) -> str:
+    """Make one of the edits somewhere in a file, and say which."""
+    names: list[str] = []
+    file.visit(names.append)
+    name = names[int(random.integers(0, len(names)))]
+    edit = edits[int(random.integers(0, len(edits)))]
+    edit(file, name)
+    return f"{edit.__name__} {name}"
 
 
 def _any_name(random: Generator) -> str:
@@ -160,6 +182,13 @@ def _set_to_nan(file: h5py.File, name: str) -> None:
         _remove(file, name)
 
 
+def _set_below_zero(file: h5py.File, name: str) -> None:
+    if isinstance(file[name], h5py.Dataset) and file[name].dtype.kind == "i" and file[name].size:
+        file[name][...] = -5
+    else:
+        _remove(file, name)
+
+
 def _remove(file: h5py.File, name: str) -> None:
     del file[name]
 
@@ -177,6 +206,16 @@ def _make_text(file: h5py.File, name: str) -> None:
 def _make_huge(file: h5py.File, name: str) -> None:
     del file[name]
     file.create_dataset(name, shape=(1 << 40,), dtype="f8", chunks=(1 << 20,))
+
+
+def _store_elsewhere(file: h5py.File, name: str) -> None:
+    del file[name]
+    file.create_dataset(name, (2, 2), "f8", external=[("/dev/zero", 0, 32)])
+
+
+def _make_complex(file: h5py.File, name: str) -> None:
+    del file[name]
+    file[name] = np.zeros(3, dtype=complex)
 
 
 def _link_outwards(file: h5py.File, name: str) -> None:
@@ -197,15 +236,19 @@ def _another_format(file: h5py.File, name: str) -> None:
     file.attrs["format"] = int(file.attrs["format"]) + 1
 
 
-_EDITS = (
-    _set_to_next_value,
+_TELLING_EDITS = (
     _set_to_nan,
+    _set_below_zero,
     _remove,
     _reshape,
     _make_text,
     _make_huge,
     _link_outwards,
     _link_to_itself,
-    _add,
+    _store_elsewhere,
+    _make_complex,
     _another_format,
 )
+"""Edits that leave what no run writes."""
+
+_EDITS = (*_TELLING_EDITS, _set_to_next_value, _add)

@@ -37,7 +37,8 @@ such a file is read, checked and started. It holds if this ends normally, or if 
     "checkpoints": """
 Folders of runs in which the checkpoint, the tables or other files are damaged, edited or exchanged, taken up with
 `--resume`. It holds if the run is refused by the name of a file in its folder, or ends with the tables of the
-unbroken run to the last bit. Edits that renew the digest of a checkpoint too are not tried: nothing could tell them.
+unbroken run to the last bit. Edits that renew the digest of a checkpoint too leave there what no run writes; nothing
+could tell others.
 """,
     "kills": """
 Runs with checkpoints, which a signal ends at a random moment, five times each, taken up in between and at last left

@@ -11,6 +11,7 @@ import numpy as np
 from scipy import sparse
 
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.geometry.answers import refuse_other_rows
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.taylor_hood.coefficients import Coefficients, coefficients_of
@@ -193,7 +194,19 @@ class SparseDiscretisation:
             prefix = f"{_NAMES[viscous]}_"
             found = {name.removeprefix(prefix): each for name, each in memory.items() if name.startswith(prefix)}
             if found:
+                self._refuse_other(found)
                 solver.recall(found, partial(self._parts, self._assembled(self._origin(found))))
+
+    def _refuse_other(self, memory: Mapping[str, FloatArray]) -> None:
+        """Raise `Wrong` where a solver's `memory` is of another mesh, or of another number of motions."""
+        nodes, (count,) = (self.numbering.nodes, self.numbering.dimension), self._constraint.prescribed.shape
+        directions = memory["mass_matrix"].shape[-1:]
+        shapes = {"advection": nodes, "flow": nodes, "position": (count, nodes[1]), "frame": nodes[1:]}
+        shapes |= {"mass_matrix": (count, *directions, *directions)}
+        if memory["corrections"].size:
+            shapes["corrections"] = len(memory["corrections"]), self.unknowns
+        for name, shape in shapes.items():
+            refuse_other_rows(memory[name], shape, name)
 
     def _named_solvers(self) -> tuple[tuple[bool, LaggedSolver[Parts]], ...]:
         """Each solver, and whether it is the one for viscous matrices."""

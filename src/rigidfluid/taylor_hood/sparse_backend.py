@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal, final
 from pydantic import Field
 
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.geometry.answers import refuse_other_rows
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.model.types import FluidState, Mesh, SolverCost
@@ -100,6 +101,8 @@ class SparseBackend(TaylorHoodBackend):
 
         self.forget()
         if memory:
+            refuse_other_rows(memory["controlled"], (self.problem.motions,), "controlled")
+            refuse_other_rows(memory["geometry"], mesh.geometry.shape, "geometry")
             there = mesh.moved_to(memory["geometry"])
             discretisation = self._discretisation(there, memory["controlled"].astype(bool)).inner
             assert isinstance(discretisation, SparseDiscretisation)

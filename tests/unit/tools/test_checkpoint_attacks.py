@@ -9,9 +9,11 @@ import pytest
 from attacks.checkpoint_damages import HARMS, Folders
 from attacks.checkpoints import EQUAL, held
 from attacks.contained import FINISHED, REFUSED, Ending
-from attacks.small_runs import DRY
+from attacks.small_runs import DRY, WET, SmallRun, differences
 
 import rigidfluid
+from rigidfluid.core.output.sealed_file import is_intact
+from rigidfluid.errors import OutputError
 
 
 @pytest.fixture(scope="module")
@@ -40,6 +42,31 @@ def test_a_harm_changes_the_folder_that_is_to_be_broken_alone(folders: Folders, 
         restore(folders.to_break, whole)
     assert broken
     assert {place: contents(place) for place in kept} == kept
+
+
+def test_an_edit_that_renews_the_digest_is_seen(folders: Folders, tmp_path: Path) -> None:
+    """The digest is right, and what it is of is not; only times that a part of the steps took may be missing."""
+    whole, refused = contents(folders.to_break), 0
+    rigidfluid.run(DRY.scene(), tmp_path)
+    for seed in range(20):
+        HARMS["state.h5: edited, its digest renewed"](folders, np.random.default_rng(seed))
+        assert is_intact((folders.to_break / "state.h5").read_bytes())
+        try:
+            rigidfluid.run(DRY.scene(), folders.to_break, resume=True)
+            assert not differences(folders.to_break, tmp_path)
+        except OutputError as error:
+            assert "state.h5" in error.subject
+            refused += 1
+        restore(folders.to_break, whole)
+    assert refused >= 15
+
+
+@pytest.mark.parametrize("small", [DRY, WET])
+def test_runs_of_some_quarters_of_the_time_end_at_an_output(small: SmallRun) -> None:
+    """One that ended between two outputs would have an output that the whole run has not."""
+    every = small.scene().output.every
+    for share in (0.25, 0.5, 0.75):
+        assert share * small.end / every == pytest.approx(round(share * small.end / every))
 
 
 def contents(folder: Path) -> dict[Path, bytes]:

@@ -124,7 +124,7 @@ def _require_range(name: str, values: Any) -> None:
     parts = name.split("/")
     if values.dtype.kind == "f":
         may_be_infinite = parts[-1] in _INFINITE
-        is_right = np.isfinite(values) | (np.isinf(values) & may_be_infinite) | (parts[-1] in _UNKNOWN)
+        is_right = np.isfinite(values) | ((values == np.inf) & may_be_infinite) | (parts[-1] in _UNKNOWN)
         _require(name, values, is_right, "numbers, infinite ones among them" if may_be_infinite else "finite numbers")
     if name in _POSITIVE:
         _require(name, values, values > 0, "a number above 0")
