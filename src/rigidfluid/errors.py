@@ -87,7 +87,7 @@ class SceneErrors(SceneError):
         super().__init__(first.subject, first.found, first.allowed, first.remedy)
 
     def __str__(self) -> str:
-        return "\n".join([f"{len(self.errors)} errors in the scene", *map(str, self.errors)])
+        return "\n".join([f"{len(self.errors)} errors", *map(str, self.errors)])
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self.errors,)

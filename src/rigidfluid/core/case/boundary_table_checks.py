@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from rigidfluid.core.case.time_factor import rows_over_time
 from rigidfluid.core.nested.rows import check_rows
+from rigidfluid.core.scene.all_errors import all_told, raise_all
 from rigidfluid.core.scene.scene import BoundaryTable, VelocityTable, WallTable
 from rigidfluid.errors import SceneError
 
@@ -18,17 +19,23 @@ if TYPE_CHECKING:
 def check_boundary_tables(tables: Sequence[BoundaryTable], domain: Domain, end: float) -> None:
     """Refuse, with SceneError, unknown names of surfaces, keys that do not go together, and rows over time that do not
     reach from the start to the ``end`` [time]."""
-    for number, table in enumerate(tables):
-        _check_on(domain, table, f"boundary.{number}")
-        _check_table(table, f"boundary.{number}")
-    for at, rows in rows_over_time(tables).items():
-        check_rows(rows, end, at)
+    with all_told() as ask:
+        ask(check_surface_names, tables, domain)
+        for number, table in enumerate(tables):
+            ask(_check_table, table, f"boundary.{number}")
+        for at, rows in rows_over_time(tables).items():
+            ask(check_rows, rows, end, at)
 
 
-def _check_on(domain: Domain, table: BoundaryTable, at: str) -> None:
+def check_surface_names(tables: Sequence[BoundaryTable], domain: Domain) -> None:
+    """Refuse, with SceneError, unknown names of surfaces."""
     allowed = ("all", *domain.names)
-    if table.on not in (*allowed, *(piece.other_name for piece in domain.pieces)):
-        raise SceneError(f"{at}.on", repr(table.on), ", ".join(allowed), "Name a surface of the domain.")
+    known = (*allowed, *(piece.other_name for piece in domain.pieces))
+    raise_all(
+        SceneError(f"boundary.{number}.on", repr(table.on), ", ".join(allowed), "Name a surface of the domain.")
+        for number, table in enumerate(tables)
+        if table.on not in known
+    )
 
 
 @singledispatch

@@ -7,8 +7,8 @@ from rigidfluid.core.fluid.material import Newtonian
 from rigidfluid.core.mesh.size_interface import SizeField
 from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.selected import Selected
-from rigidfluid.core.nested.part_options import build_part, read_options
-from rigidfluid.core.scene.all_errors import raise_all
+from rigidfluid.core.nested.part_options import build_part, read_options, refuse_unread
+from rigidfluid.core.scene.all_errors import all_told, raise_all
 from rigidfluid.core.scene.scene import FluidTable, MeshTable
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.errors import SceneError
@@ -57,8 +57,12 @@ def _size_fields(mesh: MeshTable | None, registry: Registry, dimension: int) -> 
 
 def _backend(table: FluidTable, registry: Registry) -> Selected[FluidBackend]:
     """Class of the backend that a scene names, and its options."""
-    part = registry.find(FLUID_BACKEND, table.backend)  # whoever reads results needs no more than its class
-    return Selected(part, read_options(part, table.options, type(table).model_fields, "fluid"))
+    common = type(table).model_fields
+    with all_told() as ask:
+        part = ask(registry.find, FLUID_BACKEND, table.backend)  # whoever reads results needs no more than its class
+        if part is None:
+            ask(refuse_unread, table.options, registry.installed(FLUID_BACKEND), common, "fluid")
+    return Selected(part, read_options(part, table.options, common, "fluid"))
 
 
 def _refuse_flow(table: FluidTable, backend: type[FluidBackend]) -> None:

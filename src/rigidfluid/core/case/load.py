@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from rigidfluid.core.case.auto_size import auto_size_body
+from rigidfluid.core.case.boundary_table_checks import check_surface_names
 from rigidfluid.core.case.joint_kinds import read_drives
+from rigidfluid.core.case.mechanisms import placed_mechanisms
 from rigidfluid.core.case.part_tables import check_part_tables
-from rigidfluid.core.case.scene_model import model_of
+from rigidfluid.core.case.remaining import remaining_tables
+from rigidfluid.core.case.scene_model import model_of, scene_body, scene_domain
 from rigidfluid.core.case.time_factor import read_time_tables
 from rigidfluid.core.geometry.value_types import describe
 from rigidfluid.core.model.memory import told_memory
@@ -19,6 +22,7 @@ from rigidfluid.core.scene.overrides import override
 from rigidfluid.core.scene.places import told_in_file
 from rigidfluid.core.scene.scene import AUTO, Scene, read_toml
 from rigidfluid.core.scene.validation import read_table
+from rigidfluid.core.setup.made_bodies import check_made_bodies, told_by_numbers
 from rigidfluid.errors import ArgumentError
 from rigidfluid.registry import FLUID_BACKEND, Registry, missing_packages
 from rigidfluid.regular_file import path_of
@@ -69,18 +73,35 @@ def _checked(data: Mapping[str, Any]) -> Scene:
     tables = _tables(tables_now(data))
     with all_told() as ask:
         rows = {"boundary": ask(read_time_tables, tables.boundary), "joint": ask(read_drives, tables.joint)}
+        if ask.errors:
+            ask(_check_remaining, tables_now(data), ask.subjects, Registry.load())
     scene = tables.model_copy(update=rows)
     model_of(scene)
     return scene
 
 
 def _tables(data: Mapping[str, Any]) -> Scene:
-    """Tables of a scene; where one is refused, the parts that they name are asked too."""
+    """Tables of a scene; where one is refused, the parts that they name are asked too, and what the others say."""
     with all_told() as ask:
         scene = ask(read_table, Scene, data)
         if scene is None:
             ask(check_part_tables, data, Registry.load())
+            ask(_check_remaining, data, ask.subjects, Registry.load())
     return scene
+
+
+def _check_remaining(data: Mapping[str, Any], refused: Sequence[str], registry: Registry) -> None:
+    """Raise SceneError or PluginError for wrong names of surfaces, and wrong names and places of bodies, in tables that
+    hold none of the ``refused`` values."""
+    tables, kept = remaining_tables(data, refused)
+    with told_by_numbers(kept), all_told() as ask:
+        scene = read_table(Scene, tables)
+        domain = ask(scene_domain, scene.domain, (), registry, scene.dimension)
+        mechanisms = ask(placed_mechanisms, scene.mechanism, registry, scene.dimension)
+        bodies = [ask(scene_body, table, f"body.{n}", registry, scene.dimension) for n, table in enumerate(scene.body)]
+        if domain is not None:
+            ask(check_surface_names, scene.boundary, domain)
+            ask(check_made_bodies, domain, bodies, mechanisms or (), registry)
 
 
 def load_scene(path: str | Path, overrides: Iterable[str] = ()) -> Scene:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from rigidfluid.core.model.interfaces import Part
-from rigidfluid.core.nested.part_options import own_options, read_options
+from rigidfluid.core.nested.part_options import own_options, read_options, refuse_unread
 from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.scene import (
     BodyTable,
@@ -56,14 +56,21 @@ def check_part_tables(data: Mapping[str, Any], registry: Registry) -> None:
                     part = ask(registry.find, kind, name, f"{at}.{kind.key}")
                     if part is not None:
                         ask(_check_table, part, at, table, model)
+                    elif model is not ContactTable:
+                        ask(refuse_unread, _options(table, model), registry.installed(kind), fields_by_key(model), at)
 
 
 def _check_table(part: type[Part], at: str, table: Mapping[str, Any], model: Any) -> None:
     if model is ContactTable:  # others have keys there, too
         own_options(part, table, at)
     else:
-        own = fields_by_key(model)
-        read_options(part, {key: table[key] for key in table if key not in own}, own, at)
+        read_options(part, _options(table, model), fields_by_key(model), at)
+
+
+def _options(table: Mapping[str, Any], model: Any) -> dict[str, Any]:
+    """The keys that belong to the part."""
+    own = fields_by_key(model)
+    return {key: table[key] for key in table if key not in own}
 
 
 def _tables(data: Mapping[str, Any], place: str) -> Iterator[tuple[str, Mapping[str, Any]]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache, singledispatch
+from typing import NamedTuple
 
 from rigidfluid.core.case.boundary import condition_makers
 from rigidfluid.core.case.boundary_table_checks import check_boundary_tables
@@ -22,8 +23,10 @@ from rigidfluid.core.nested.part_options import build_part, own_options, read_op
 from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.scene import AUTO, BodyTable, BoundaryTable, ContactTable, DomainTable, Scene
 from rigidfluid.core.setup.contact_laws import ContactLaw
+from rigidfluid.core.setup.fluid import Fluid, NoFluid
+from rigidfluid.core.setup.made_bodies import check_made_bodies
 from rigidfluid.core.setup.model import ContactStepping, Model
-from rigidfluid.core.setup.rigid_body import RigidBody
+from rigidfluid.core.setup.rigid_body import JoinedBodies, PlacedMechanism, RigidBody
 from rigidfluid.errors import ArgumentError
 from rigidfluid.registry import BODY, DETECTOR, DOMAIN, Registry
 
@@ -72,13 +75,40 @@ def _kept(this: _ThisScene) -> Model:
 def _model(scene: Scene, registry: Registry) -> Model:
     with all_told() as ask:
         ask(check_contact_table, scene.contact, scene.interaction)
-        if domain := ask(_domain, scene.domain, scene.boundary, registry, scene.dimension):
+        domain = ask(scene_domain, scene.domain, scene.boundary, registry, scene.dimension)
+        if domain is not None:
             ask(check_boundary_tables, scene.boundary, domain, scene.time.end)
         mechanisms = ask(placed_mechanisms, scene.mechanism, registry, scene.dimension)
-        bodies = tuple(ask(_body, table, f"body.{n}", registry, scene.dimension) for n, table in enumerate(scene.body))
+        bodies = tuple(
+            ask(scene_body, table, f"body.{n}", registry, scene.dimension) for n, table in enumerate(scene.body)
+        )
         fluid = ask(scene_fluid, scene.fluid, scene.mesh, registry, scene.dimension)
         laws = ask(scene_laws, scene.contact, scene.interaction, registry)
         joints = ask(scene_joints, scene.joint, registry, scene.dimension)
+        model = (
+            None
+            if ask.errors
+            else ask(_compose, scene, registry, _Parts(domain, bodies, mechanisms, fluid, laws, joints))
+        )
+        if ask.errors and domain is not None:
+            ask(check_made_bodies, domain, bodies, mechanisms or (), registry)
+    assert model is not None
+    return model
+
+
+class _Parts(NamedTuple):
+    """What the tables of a scene say, as objects of a model."""
+
+    domain: Domain
+    bodies: tuple[RigidBody, ...]
+    mechanisms: tuple[PlacedMechanism, ...]
+    fluid: Fluid | NoFluid
+    laws: Sequence[ContactLaw]
+    joints: tuple[JoinedBodies, ...]
+
+
+def _compose(scene: Scene, registry: Registry, parts: _Parts) -> Model:
+    domain, bodies, mechanisms, fluid, laws, joints = parts
     shapes = [body.shape for body in bodies] + [one.shape for each in mechanisms for one in each.mechanism.components]
     detector, why = _detector(scene.contact, registry, (shapes, domain), fluid.backend.part.wet, laws)
     model = Model(
@@ -104,13 +134,15 @@ def _model(scene: Scene, registry: Registry) -> Model:
     return model.told_by(scene, why)
 
 
-def _domain(table: DomainTable, boundary: Sequence[BoundaryTable], registry: Registry, dimension: int) -> Domain:
+def scene_domain(table: DomainTable, boundary: Sequence[BoundaryTable], registry: Registry, dimension: int) -> Domain:
+    """The domain of a scene, with pairs of periodic surfaces; raises SceneError or PluginError."""
     part = registry.get(DOMAIN, table.type)
     domain = part(read_options(part, table.options, type(table).model_fields, "domain"), dimension)
     return domain.with_periodic(periodic_pairs(boundary, domain))
 
 
-def _body(table: BodyTable, at: str, registry: Registry, dimension: int) -> RigidBody:
+def scene_body(table: BodyTable, at: str, registry: Registry, dimension: int) -> RigidBody:
+    """The body of a table at a place in the scene; raises SceneError or PluginError."""
     shape = build_part(BODY, table, at, registry, dimension)
     return RigidBody(shape=shape, **values_of(table, RigidBody, "shape"))
 

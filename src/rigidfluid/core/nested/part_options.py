@@ -62,9 +62,13 @@ def build_part(kind: Kind[S], table: NamesPart, at: str, registry: Registry, dim
     Raises PluginError if it is missing, SceneError for an option that is unknown or refused.
     """
     assert isinstance(table, BaseModel)
-    part = registry.get(kind, table.type, f"{at}.type")
-    options = dict(table.model_extra or {})
-    read = read_options(part, options, type(table).model_fields, at)
+    options, common = dict(table.model_extra or {}), type(table).model_fields
+    every = registry.installed(kind)
+    with all_told() as ask:
+        part = ask(registry.get, kind, table.type, f"{at}.type")
+        if part is None:
+            ask(refuse_unread, options, every, common, at)
+    read = read_options(part, options, common, at)
     with told_at(at):
         return part(read, dimension)
 

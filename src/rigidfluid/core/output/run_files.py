@@ -72,4 +72,4 @@ FILES = (
 
 RUN = Product("run", "|".join(files.pattern for files in FILES), subfolders=("fields", "report"))
 ADDED = Product("run", "|".join(files.pattern for files in _ADDED), subfolders=("report",))
-"""What commands add to the folder of a run."""
+"""Files that commands add to the folder of a run."""

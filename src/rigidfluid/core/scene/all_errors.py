@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from typing import ParamSpec, Protocol, TypeVar, cast
+from typing import ParamSpec, TypeVar, cast
 
 from rigidfluid.errors import PluginError, RigidfluidError, SceneError, SceneErrors
 
@@ -12,36 +12,46 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 
-class Ask(Protocol):
-    """A question asked of a scene."""
+class Ask:
+    """Asks questions of a scene, and keeps the ``errors`` that are their answers."""
+
+    def __init__(self) -> None:
+        self.errors: list[RigidfluidError] = []
 
     def __call__(self, question: Callable[P, T], *values: P.args, **keys: P.kwargs) -> T:
         """The answer; None where it is an error, which is raised later."""
+        try:
+            return question(*values, **keys)
+        except (SceneError, PluginError) as error:
+            self.errors.append(error)
+        return cast(T, None)
+
+    @property
+    def subjects(self) -> list[str]:
+        """What the errors are about."""
+        return [error.subject for error in _parts(self.errors)]
 
 
 @contextmanager
 def all_told() -> Iterator[Ask]:
-    """Yield a function that asks questions; their errors are raised together at the end."""
-    found: list[RigidfluidError] = []
-
-    def ask(question: Callable[P, T], *values: P.args, **keys: P.kwargs) -> T:
-        try:
-            return question(*values, **keys)
-        except (SceneError, PluginError) as error:
-            found.append(error)
-        return cast(T, None)
-
+    """Yield what asks questions; their errors are raised together at the end."""
+    ask = Ask()
     yield ask
-    raise_all(found)
+    raise_all(ask.errors)
 
 
 def raise_all(errors: Iterable[RigidfluidError]) -> None:
     """Raise one error as it is, several as SceneErrors, those about the same once; nothing without any."""
-    parts = [part for error in errors for part in (error.errors if isinstance(error, SceneErrors) else [error])]
     different: dict[str, RigidfluidError] = {}
-    for part in parts:
+    for part in _parts(errors):
         different.setdefault(part.subject, part)
     if len(different) == 1:
         raise next(iter(different.values())) from None
     if different:
         raise SceneErrors(different.values()) from None
+
+
+def _parts(errors: Iterable[RigidfluidError]) -> Iterator[RigidfluidError]:
+    """The errors, one by one."""
+    for error in errors:
+        yield from error.errors if isinstance(error, SceneErrors) else [error]

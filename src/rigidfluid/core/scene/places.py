@@ -46,7 +46,8 @@ def line_of(field: str, lines: Sequence[str]) -> int | None:
 
 
 def _tell_place(error: RigidfluidError, path: Path, lines: Sequence[str], assignments: Sequence[str]) -> int:
-    """Give an error its place; return its line, 0 of assignments, and one after all where nothing is known."""
+    """Give an error its place, the file alone for what is missing in it; return its line, 0 of assignments, and one
+    after all without a line."""
     if error.place:
         return 0
     for assignment in reversed(assignments):
@@ -56,6 +57,8 @@ def _tell_place(error: RigidfluidError, path: Path, lines: Sequence[str], assign
             return 0
     line = line_of(error.subject, lines)
     if line is None:
+        if isinstance(error, SceneError):
+            error.place = str(path)
         return len(lines) + 1
     error.place = f"{path}:{line}"
     return line

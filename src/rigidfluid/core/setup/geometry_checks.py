@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from math import sqrt
 from typing import TYPE_CHECKING
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.model.types import Contacts, Pose
+from rigidfluid.core.scene.all_errors import raise_all
 from rigidfluid.core.setup.shape_checks import check_shapes
 from rigidfluid.errors import SceneError
 
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from rigidfluid.core.model.interfaces import Body, Detector
     from rigidfluid.core.scene.scene import MeshTable
     from rigidfluid.core.setup.model import Model
+    from rigidfluid.core.setup.placed_bodies import Arrangement
 
 
 MOST_FACETS_PER_RADIUS = 10**4
@@ -33,14 +35,21 @@ def check_geometry(model: Model, pose: Pose) -> None:
     """Refuse shapes that contradict themselves, with PluginError, and, with SceneError, bodies that overlap each other
     or a surface of the domain or are lost in it at their starting ``pose``, and a mesh too coarse for a gap."""
     check_shapes(model.shapes)
-    _check_extent(model)
     mesh = model.fluid.mesh
     reach = _coarsest_gap(mesh, model.shapes) if mesh else 0.0
-    contacts = initial_contacts(model.domain, model.exact_detector, model.shapes, pose, reach)
-    _check_overlap(model, contacts)
+    contacts = check_places(model, pose, reach)
     if mesh is not None:
         _check_facets(mesh, model.shapes)
         _check_resolution(model, mesh, contacts)
+
+
+def check_places(placed: Arrangement, pose: Pose, reach: float = 0.0) -> Contacts:
+    """Contacts with gaps up to ``reach`` [length]; raises SceneError for bodies that overlap each other or a surface of
+    the domain, or are lost in it."""
+    _check_extent(placed)
+    contacts = initial_contacts(placed.domain, placed.exact_detector, placed.shapes, pose, reach)
+    raise_all(_overlaps(placed, contacts))
+    return contacts
 
 
 def surfaces_of(domain: Domain, bodies: int) -> tuple[Wall, ...]:
@@ -56,10 +65,10 @@ def initial_contacts(
     return detector(detector.Options(), bodies, surfaces_of(domain, len(bodies))).detect(pose, None, reach)
 
 
-def _check_extent(model: Model) -> None:
-    _check_units(model)
-    farthest = float(np.max(np.abs(model.domain.extent)))
-    radii = [shape.bounding_radius for shape in model.shapes]
+def _check_extent(placed: Arrangement) -> None:
+    _check_units(placed)
+    farthest = float(np.max(np.abs(placed.domain.extent)))
+    radii = [shape.bounding_radius for shape in placed.shapes]
     smallest = min(range(len(radii)), key=radii.__getitem__)
     if radii[smallest] < SMALLEST_BODY * farthest:
         raise SceneError(
@@ -70,26 +79,33 @@ def _check_extent(model: Model) -> None:
         )
 
 
-def _check_units(model: Model) -> None:
+def _check_units(placed: Arrangement) -> None:
     """Refuse a body that cannot be in the domain wherever it is."""
-    width = float(model.domain.size.max())
-    for number, shape in enumerate(model.shapes):
+    width = float(placed.domain.size.max())
+    for number, shape in enumerate(placed.shapes):
         if shape.bounding_radius > width:
             found = f"a bounding radius of {shape.bounding_radius:.6g} in a domain of width {width:.6g}"
             remedy = "Use the same units for both; lengths in a file are multiplied by `domain.scale`."
             raise SceneError(f"body.{number}", found, "bodies smaller than the domain", remedy)
 
 
-def _check_overlap(model: Model, contacts: Contacts) -> None:
-    if len(contacts) == 0 or np.min(contacts.gap) > 0:
-        return
-    worst = int(np.argmin(contacts.gap))
-    a, b, depth = int(contacts.body_a[worst]), int(contacts.body_b[worst]), abs(float(contacts.gap[worst]))
-    body, kind = model.all_bodies[a], "body" if b < len(model.all_bodies) else "surface"
-    other = f"{kind} {model.surfaces[b]!r}" + (" of the domain" if kind == "surface" else "")
+def _overlaps(placed: Arrangement, contacts: Contacts) -> Iterator[SceneError]:
+    """An error for each body that overlaps or touches something, with that which it overlaps most; the worst first."""
+    told: set[int] = set()
+    for row in np.argsort(contacts.gap, kind="stable").tolist():
+        body = int(contacts.body_a[row])
+        if contacts.gap[row] <= 0.0 and body not in told:
+            told.add(body)
+            yield _overlap(placed, contacts, row)
+
+
+def _overlap(placed: Arrangement, contacts: Contacts, row: int) -> SceneError:
+    a, b, depth = int(contacts.body_a[row]), int(contacts.body_b[row]), abs(float(contacts.gap[row]))
+    body, kind = placed.all_bodies[a], "body" if b < len(placed.all_bodies) else "surface"
+    other = f"{kind} {placed.surfaces[b]!r}" + (" of the domain" if kind == "surface" else "")
     where = f"overlaps {other} by {depth:.6g}" if depth > 0.0 else f"touches {other}"
-    whole = {placed.name for placed in model.mechanisms} & {body.part_of}
-    raise SceneError(
+    whole = {whole.name for whole in placed.mechanisms} & {body.part_of}
+    return SceneError(
         f"mechanism {whole.pop()!r}" if whole else f"body.{a}.position",
         f"{list(body.position)}, where body {body.name!r} {where}",
         "a place inside the domain and clear of all other surfaces",

@@ -11,20 +11,20 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import Field
 
-from rigidfluid.core.contact.detector_choice import choose_detector, exact_detector
+from rigidfluid.core.contact.detector_choice import choose_detector
 from rigidfluid.core.fluid.conditions import BoundaryCondition, NoSlip
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import Body, Detector, Mechanism
+from rigidfluid.core.model.interfaces import Detector, Mechanism
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.scene.scene import OutputTable, Scene, TimeTable, WindowTable
 from rigidfluid.core.setup.checked import AnyRow, NotNegative, Vector, checked
-from rigidfluid.core.setup.components import component_bodies
 from rigidfluid.core.setup.contact_laws import ContactLaw, told_apart
 from rigidfluid.core.setup.description import describe
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.core.setup.model_checks import check_model
+from rigidfluid.core.setup.placed_bodies import Arrangement
 from rigidfluid.core.setup.rigid_body import JoinedBodies, PlacedMechanism, RigidBody
 from rigidfluid.described import Described, first_names
 from rigidfluid.registry import Registry
@@ -46,7 +46,7 @@ class ContactStepping:
 
 
 @checked
-class Model(Described):
+class Model(Arrangement, Described):
     """Rigid bodies in a domain, with what is around them and between them: m dv/dt = (m - ρV)g + fluid + contacts.
 
     Nothing in it needs to be registered: a domain, a shape, a law, a condition or a size field may be any object of its
@@ -147,24 +147,9 @@ class Model(Described):
         return describe(self) if self._scene is None else self._scene.to_dict()
 
     @property
-    def dimension(self) -> int:
-        """Number of space dimensions."""
-        return self.domain.dimension
-
-    @property
     def wet(self) -> bool:
         """Whether there is a fluid around the bodies, on a mesh."""
         return self.fluid.backend.part.wet
-
-    @cached_property
-    def all_bodies(self) -> tuple[RigidBody, ...]:
-        """The single bodies, and after them the components of all mechanisms, where they are at the start."""
-        return (*self.bodies, *component_bodies(self.mechanisms, self.dimension))
-
-    @cached_property
-    def shapes(self) -> tuple[Body, ...]:
-        """Shapes of all bodies."""
-        return tuple(body.shape for body in self.all_bodies)
 
     @cached_property
     def named_laws(self) -> tuple[ContactLaw, ...]:
@@ -180,11 +165,6 @@ class Model(Described):
     def mechanisms_by_name(self) -> dict[str, Mechanism]:
         """Mechanisms by their names, in order."""
         return {placed.name: placed.mechanism for placed in self.mechanisms}
-
-    @property
-    def surfaces(self) -> tuple[str, ...]:
-        """Names of all bodies, then of the domain's pieces."""
-        return (*(body.name for body in self.all_bodies), *self.domain.names)
 
     @cached_property
     def conditions(self) -> tuple[BoundaryCondition, ...]:
@@ -214,8 +194,3 @@ class Model(Described):
             return self.detector, self._detector_why
         part, why = choose_detector(self.shapes, self.domain.pieces, self.wet and bool(self.laws), self.registry)
         return Selected(part, part.Options()), why
-
-    @cached_property
-    def exact_detector(self) -> type[Detector]:
-        """The cheapest detector that is exact and needs no mesh."""
-        return exact_detector(self.shapes, self.domain.pieces, self.registry)

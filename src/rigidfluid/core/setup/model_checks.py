@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable
 from math import pi
 from typing import TYPE_CHECKING
 
@@ -11,6 +10,7 @@ import numpy as np
 
 from rigidfluid.core.contact.detection import detection_by
 from rigidfluid.core.nested.placing import check_orientation
+from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.core.setup.along_strokes import refuse_overlap_along
 from rigidfluid.core.setup.boundary_checks import check_boundary, check_inflow, check_oblique, check_periodic
@@ -19,6 +19,7 @@ from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.core.setup.joint_checks import check_joints
 from rigidfluid.core.setup.mechanism_checks import refuse_invalid
 from rigidfluid.core.setup.mesh_checks import check_cells, check_mesh_table
+from rigidfluid.core.setup.placed_bodies import check_names, doubled
 from rigidfluid.core.setup.quick_strokes import refuse_quick_mechanisms
 from rigidfluid.errors import SceneError
 
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from rigidfluid.core.model.interfaces import Body, Mechanism
     from rigidfluid.core.scene.scene import MeshTable
     from rigidfluid.core.setup.model import Model
-    from rigidfluid.core.setup.rigid_body import RigidBody, Start
+    from rigidfluid.core.setup.rigid_body import PlacedMechanism, RigidBody, Start
 
 MOST_STEPS = 10**9
 """A scene of more nominal steps than this is a slip of units."""
@@ -37,27 +38,40 @@ def check_model(model: Model) -> None:
     """Refuse, with SceneError, a model that contradicts itself, or that its objects cannot run."""
     if not (model.bodies or model.mechanisms):
         raise SceneError("body", "nothing", "a body or a mechanism", "Add a table [[body]] or [[mechanism]].")
-    for number, placed in enumerate(model.mechanisms):
-        _check_dimension(placed.mechanism, model.dimension, f"mechanism.{number}")
-        refuse_invalid(placed.mechanism, f"mechanism.{number}")
-        if placed.name in [other.name for other in model.mechanisms[:number]]:
-            raise _doubled(f"mechanism.{number}.name", placed.name)
-        _check_vectors(placed, model.dimension, f"mechanism.{number}")
-    for number, body in enumerate(model.bodies):
-        _check_dimension(body.shape, model.dimension, f"body.{number}")
-        _check_vectors(body, model.dimension, f"body.{number}")
-        _check_control(body, f"body.{number}")
-    _check_gravity(model)
-    _check_stepping(model)
-    _check_assemblies(model.bodies)
-    _check_times(model)
-    _check_names(model)
-    check_joints(model)
+    with all_told() as ask:
+        for number, placed in enumerate(model.mechanisms):
+            ask(_check_mechanism, model, placed, number)
+        for number, body in enumerate(model.bodies):
+            ask(_check_body, body, model.dimension, f"body.{number}")
+    with all_told() as ask:
+        for question in _QUESTIONS:
+            ask(question, model)
+
+
+def _check_mechanism(model: Model, placed: PlacedMechanism, number: int) -> None:
+    at = f"mechanism.{number}"
+    _check_dimension(placed.mechanism, model.dimension, at)
+    refuse_invalid(placed.mechanism, at)
+    if placed.name in [other.name for other in model.mechanisms[:number]]:
+        raise doubled(f"{at}.name", placed.name)
+    check_vectors(placed, model.dimension, at)
+
+
+def _check_body(body: RigidBody, dimension: int, at: str) -> None:
+    _check_dimension(body.shape, dimension, at)
+    check_vectors(body, dimension, at)
+    _check_control(body, at)
+
+
+def _check_strokes(model: Model) -> None:
     refuse_quick_mechanisms(model.mechanisms_by_name, model.time)
     refuse_overlap_along(model.mechanisms_by_name, model.time.end, model.exact_detector)
+
+
+def _check_around(model: Model) -> None:
+    """Refuse a fluid, or none, and conditions on the domain's surfaces, each of which reads what the one before it has
+    found valid."""
     check_boundary(model)
-    _check_probes(model)
-    check_laws(model)
     check_periodic(model)
     if isinstance(model.fluid, Fluid):
         _check_fluid(model, model.fluid)
@@ -145,7 +159,8 @@ def _check_without_fluid(model: Model) -> None:
         _check_mesh(model, model.fluid.insertion)
 
 
-def _check_vectors(placed: Start, dimension: int, at: str) -> None:
+def check_vectors(placed: Start, dimension: int, at: str) -> None:
+    """Refuse, with SceneError, a place and velocities that the ``dimension`` does not have."""
     turns = 1 if dimension == 2 else 3
     lengths = {"position": dimension, "velocity": dimension, "angular_velocity": turns}
     for name, length in lengths.items():
@@ -153,19 +168,6 @@ def _check_vectors(placed: Start, dimension: int, at: str) -> None:
         if vector is not None and len(vector) != length:
             raise SceneError(f"{at}.{name}", f"{vector}", f"{length} numbers", "Correct it.")
     check_orientation(placed, dimension, at)
-
-
-def _check_names(model: Model) -> None:
-    names, wholes = [body.name for body in model.all_bodies], [placed.name for placed in model.mechanisms]
-    for name, count in Counter([*names, *wholes, *model.domain.names]).items():
-        if count > 1:
-            last = len(names) - 1 - names[::-1].index(name) if name in names else len(names)
-            field = f"body.{last}.name" if last < len(model.bodies) else "mechanism.name"
-            raise _doubled(field, name)
-
-
-def _doubled(field: str, name: str) -> SceneError:
-    return SceneError(field, repr(name), "a name that no other body or surface has", "Rename it.")
 
 
 def _check_probes(model: Model) -> None:
@@ -192,9 +194,9 @@ def _check_control(body: RigidBody, at: str) -> None:
         raise SceneError(field, "nothing", "amplitude and frequency together, or neither", f"Add {missing!r}.")
 
 
-def _check_assemblies(bodies: Sequence[RigidBody]) -> None:
+def _check_assemblies(model: Model) -> None:
     """A name that only one body gives is a slip of the pen."""
-    wholes = [body.part_of for body in bodies]
+    wholes = [body.part_of for body in model.bodies]
     for number, whole in enumerate(wholes):
         if whole is not None and wholes.count(whole) == 1:
             others = sorted({name for name in wholes if name is not None and name != whole})
@@ -222,3 +224,18 @@ def _check_frequency(body: RigidBody, step: float) -> None:
     if pi * frequency * step > 1.0:
         found = f"{step:g}, {frequency * step:.3g} periods of body {body.name!r}"
         raise SceneError("time.step", found, f"at most {1.0 / (pi * frequency):.3g}", "Shorten it.")
+
+
+_QUESTIONS: tuple[Callable[[Model], None], ...] = (
+    _check_gravity,
+    _check_stepping,
+    _check_assemblies,
+    _check_times,
+    check_names,
+    check_joints,
+    _check_strokes,
+    _check_around,
+    _check_probes,
+    check_laws,
+)
+"""Questions that do not depend on each other, of a model whose bodies are valid one by one."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 from math import prod
 from pathlib import Path
 
+from rigidfluid.core.scene.all_errors import all_told
+from rigidfluid.core.scene.places import told_in_file
 from rigidfluid.core.scene.scene import read_toml
 from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.core.scene.validation import read_table
@@ -16,13 +18,16 @@ from rigidfluid.post.studies.sobol import require_salib
 def load_study(path: str | Path) -> Study:
     """Read a study file (TOML), validated but for its scene or kernel.
 
-    Raises SceneError if it cannot be read, is no TOML, has a value that is not allowed, or needs a package that is
-    missing.
+    Raises SceneError if it cannot be read, is no TOML, has a value that is not allowed, and in which line, or needs a
+    package that is missing.
     """
     path = Path(path)
-    tables = read_table(StudyFile, read_toml(path, "study"))
-    for check in (_check_subject, _check_knobs, _check_group, _check_lengths, _check_samples, _check_reference):
-        check(tables)
+    data = read_toml(path, "study")
+    with told_in_file(path):
+        tables = read_table(StudyFile, data)
+        with all_told() as ask:
+            for check in (_check_subject, _check_knobs, _check_group, _check_lengths, _check_samples, _check_reference):
+                ask(check, tables)
     return Study(tables, path, path.read_text(encoding="utf-8"))
 
 

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from copy import deepcopy
 from typing import Any
 
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.run.run import simulate
 from rigidfluid.core.scene.overrides import assign
+from rigidfluid.core.scene.places import line_of, told_in_file
 from rigidfluid.core.scene.scene import Scene, read_toml
-from rigidfluid.errors import RigidfluidError
+from rigidfluid.errors import PluginError, RigidfluidError, SceneError, SceneErrors
 from rigidfluid.post.studies.figure import check_figure, read_figure
 from rigidfluid.post.studies.model import ErrorTable, Study
 from rigidfluid.post.studies.strict_table import Settings
@@ -32,7 +34,9 @@ class SceneSubject:
         self._clock = study.tables.study.timed_by
         self._data = read_toml(study.scene)
         self._warm: set[str] = set()
-        check_figure(self._figure, self._first_scene(study.settings()))
+        first = self._first_scene(study)
+        with told_in_file(study.path):
+            check_figure(self._figure, first)
         self.target = _target(study.tables.study.label, study.tables.error)
 
     def read(self, settings: Settings) -> Settings:
@@ -62,21 +66,44 @@ class SceneSubject:
     def _scene(self, settings: Settings) -> Scene:
         return scene_from_dict(self._tables(settings))
 
-    def _first_scene(self, all_settings: Iterable[Settings]) -> Scene:
+    def _first_scene(self, study: Study) -> Scene:
         """The first one that is valid; raises the first error if none is: then the study is wrong, not a setting."""
         errors: list[RigidfluidError] = []
-        for settings in all_settings:
+        for settings in study.settings():
             try:
                 return self._scene(settings)
             except RigidfluidError as error:
                 errors.append(error)
-        raise errors[0]
+        assert study.scene is not None
+        with told_in_file(study.scene), _told_in_study(study):
+            raise errors[0]
 
     def _warm_up(self, scene: Scene) -> None:
         """One step that is not measured, so that no backend's first run pays for imports and compiled kernels."""
         if scene.fluid.backend not in self._warm:
             simulate(scene.model_copy(update={"time": scene.time.model_copy(update={"end": scene.time.step})}))
             self._warm.add(scene.fluid.backend)
+
+
+@contextmanager
+def _told_in_study(study: Study) -> Iterator[None]:
+    """Say in errors of a scene in which line of the study's file the values stand that are set there."""
+    tables = study.tables
+    random = {} if tables.random is None else tables.random.parameters
+    set_here: dict[str, Iterable[str]] = {
+        "vary": tables.vary,
+        "parameters": tables.parameters,
+        "random.parameters": random,
+        "set": tables.set,
+    }
+    try:
+        yield
+    except (SceneError, PluginError) as error:
+        for one in error.errors if isinstance(error, SceneErrors) else [error]:
+            for table, values in set_here.items():
+                if any(f"{one.subject}.".startswith(f"{key}.") for key in values):
+                    one.place = f"{study.path}:{line_of(f'{table}.{one.subject}', study.text.splitlines())}"
+        raise
 
 
 def _target(label: str, error: ErrorTable) -> Target:

@@ -90,7 +90,7 @@ def test_the_command_tells_each_in_a_line(tmp_path: Path) -> None:
     result = CliRunner().invoke(app, ["check", str(path)])
     assert result.exit_code == 2
     head, *lines = result.stderr.splitlines()
-    assert head == "Error: 6 errors in the scene"
+    assert head == "Error: 6 errors"
     assert lines[0].startswith(f"{path}:6: fluid.density: found 'one'; allowed is a valid number.")
     assert "Did you mean 'sphere'?" in lines[2]
     assert len(lines) == 6
@@ -182,3 +182,100 @@ def test_errors_pass_between_processes() -> None:
     both = SceneErrors([error, PluginError("contact.law", 1, "2", "Mend it.")])
     assert str(pickle.loads(pickle.dumps(both))) == str(both)
     assert "scene.toml:3: body.0.type" in str(both)
+
+
+DIFFERENT_KINDS = """\
+[scene]
+name = "six"
+dimension = 2
+
+[fluid]
+backend = "scikit-fenics"
+densty = 1.0
+density = 1.0
+viscosity = 0.1
+
+[domain]
+lower = [0.0, 0.0]
+upper = [2.0, 6.0]
+
+[[boundary]]
+on = "topp"
+type = "wall"
+
+[[body]]
+name = "refused"
+type = "sphere"
+radius = -0.125
+density = 1.25
+position = [1.0, 2.0]
+
+[[body]]
+name = "one"
+type = "sphere"
+radius = 0.125
+density = 1.25
+position = [1.0, 4.0]
+
+[[body]]
+name = "one"
+type = "sphere"
+radius = 0.125
+density = 1.25
+position = [1.1, 4.0]
+
+[[body]]
+name = "outside"
+type = "sphere"
+radius = 0.125
+density = 1.25
+position = [3.0, 4.0]
+
+[mesh]
+size = 0.15
+size_body = 0.01
+
+[time]
+end = 1.0
+step = 0.001
+"""
+PLACES_OF_KINDS = {
+    "fluid.backend": 6,
+    "fluid.densty": 7,
+    "boundary.0.on": 16,
+    "body.0.radius": 22,
+    "body.1.position": 31,
+    "body.2.name": 34,
+    "body.3.position": 45,
+}
+
+
+@pytest.mark.parametrize("output", ["", "\n[output]\nevery = 0.02\n"])
+def test_mistakes_of_different_kinds_are_told_together_each_in_its_line(tmp_path: Path, output: str) -> None:
+    errors = {error.subject: error.place for error in errors_of(DIFFERENT_KINDS + output, tmp_path)}
+
+    path = tmp_path / "scene.toml"
+    missing = {} if output else {"output": str(path)}
+    assert errors == {subject: f"{path}:{line}" for subject, line in PLACES_OF_KINDS.items()} | missing
+
+
+def test_doubled_names_do_not_hide_overlaps(tmp_path: Path) -> None:
+    valid = DIFFERENT_KINDS.replace("fenics", "fem").replace("densty = 1.0\n", "").replace("topp", "top")
+    text = valid.replace("-0.125", "0.125") + "[output]\nevery = 0.02\n"
+
+    assert [error.subject for error in errors_of(text, tmp_path)] == [
+        "body.1.position",
+        "body.2.name",
+        "body.3.position",
+    ]
+
+
+def test_every_body_that_overlaps_is_told(tmp_path: Path) -> None:
+    valid = DIFFERENT_KINDS.replace("fenics", "fem").replace("densty = 1.0\n", "").replace("topp", "top")
+    path = tmp_path / "scene.toml"
+    path.write_text(valid.replace("-0.125", "0.125").replace('"one"', '"two"', 1) + "[output]\nevery = 0.02\n")
+
+    told = CliRunner().invoke(app, ["check", str(path)])
+
+    assert told.exit_code == 2
+    assert [line.partition(": ")[0] for line in told.stderr.splitlines()[1:]] == [f"{path}:30", f"{path}:44"]

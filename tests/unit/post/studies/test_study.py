@@ -519,3 +519,32 @@ def test_the_examples_of_the_page_are_studies(tmp_path: Path) -> None:
         path = tmp_path / f"{name}.toml"
         path.write_text(text)
         SceneSubject(load_study(path))
+
+
+@pytest.mark.parametrize(
+    ("changes", "line"),
+    [
+        (("[error]\n", "[erorr]\n"), "17"),
+        (('group = "body.0.density"', 'group = "body.0.mass"'), "6"),
+        (("time.end = 0.004", "time.end = -1.0"), "9"),
+        (("time.step = [0.002, 0.001, 0.0005]", "time.stepp = [0.002]"), "14"),
+        (('body = "left_disk"', 'body = "lefty"'), "18"),
+    ],
+)
+def test_errors_of_a_study_name_its_file_and_line(write: Write, changes: tuple[str, ...], line: str) -> None:
+    path = write(*changes)
+
+    told = CliRunner().invoke(app, ["study", str(path), "--out", str(path.parent / "out")])
+
+    assert told.exit_code == 2
+    assert f"{path}:{line}: " in told.stderr
+
+
+def test_errors_of_its_scene_name_the_scene_file(write: Write) -> None:
+    path = write(f"{SCENES}/dry_bounce.toml", "broken.toml")
+    scene = path.with_name("broken.toml")
+    scene.write_text((SCENES / "dry_bounce.toml").read_text().replace("radius = ", "raduis = ", 1))
+
+    told = CliRunner().invoke(app, ["study", str(path), "--out", str(path.parent / "out")])
+
+    assert f"{scene}:" in told.stderr
