@@ -19,11 +19,12 @@ from rigidfluid.checks.impact import impact_findings
 from rigidfluid.checks.joints import joint_findings
 from rigidfluid.checks.mechanisms import mechanism_findings
 from rigidfluid.checks.memory import memory_findings
+from rigidfluid.checks.overridden import overridden_findings
 from rigidfluid.checks.range_checks import parallel_wall_findings, range_findings, start_findings
 from rigidfluid.checks.rebound import rebound_findings
 from rigidfluid.checks.resolution import resolution_findings
 from rigidfluid.checks.run_size import run_size
-from rigidfluid.checks.run_time import run_time_findings
+from rigidfluid.checks.run_time import dry_run_time_findings, run_time_findings
 from rigidfluid.checks.separation import law_findings, open_face_findings, strength_findings
 from rigidfluid.checks.shapes import facet_findings
 from rigidfluid.checks.static_load import rest_findings, stack_findings
@@ -103,8 +104,11 @@ def findings(model: Model, system: System, start: Contacts) -> Iterator[Finding]
     """The answers to all questions, in the order in which they are asked."""
     mesh, time = model.fluid.mesh, model.time
     yield from chain(law_findings(system), open_face_findings(system), strength_findings(system))
+    yield from overridden_findings(model.boundary_tables, model.domain)
     yield from chain(unit_findings(model, system), tolerance_findings(time), facet_findings(system))
     yield from chain(joint_findings(model, system), mechanism_findings(model, system))
+    if system.fluid is None:
+        yield from dry_run_time_findings(system, time)
     if mesh is not None:
         size = run_size(model, system, mesh)
         if size is not None:

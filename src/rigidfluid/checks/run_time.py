@@ -23,12 +23,18 @@ _MESH_SECONDS = {2: 3e-5, 3: 4e-4}
 _CONTACT_SECONDS = {True: 0.005, False: 0.1}
 """CPU seconds of a step through contacts of balls alone, and of other shapes, whose gaps take long to find."""
 
+_DRY_SECONDS = 5e-4, 1e-3
+"""CPU seconds of a step without a fluid, in the program and not for each body."""
+
+_DRY_CONTACT_SECONDS = {True: 0.0015, False: 0.15}
+"""The most CPU seconds for each body of a step through contacts without a fluid, of balls alone and of other shapes."""
+
 _UNITS = ((172800.0, 86400.0, "days"), (7200.0, 3600.0, "h"), (120.0, 60.0, "min"), (0.0, 1.0, "s"))
 
 
 def run_time_findings(size: RunSize, system: System, time: TimeTable) -> Iterator[Finding]:
     """Predict the least and the greatest time of one core of this machine that a run takes."""
-    steps = ceil(time.end / time.step * (1.0 - 1e-12))
+    steps = _steps(time)
     speed = machine_speed()
     of_cell, contact = _MESH_SECONDS[system.dimension], 0.0
     if system.law is not None:
@@ -43,6 +49,22 @@ def run_time_findings(size: RunSize, system: System, time: TimeTable) -> Iterato
     taken = time_in_words(least, most)
     text = f"{steps} steps and some {size.meshes} meshes take {taken} of one core at its present speed"
     yield Finding("note", QUESTION, (), text, found=found)
+
+
+def dry_run_time_findings(system: System, time: TimeTable) -> Iterator[Finding]:
+    """Predict the least and the greatest time of one core of this machine that a run without a fluid takes."""
+    steps, speed = _steps(time), machine_speed()
+    least, most = (steps * seconds / speed for seconds in _DRY_SECONDS)
+    if system.law is not None:
+        most += steps * len(system.bodies) * _DRY_CONTACT_SECONDS[bool(system.balls.all())] / speed
+    found: Figures = {"steps": steps, "meshes": 0, "least": least, "most": most, "speed": speed}
+    text = f"{steps} steps without a fluid take {time_in_words(least, most)} of one core, as fast as now"
+    yield Finding("note", QUESTION, (), text, found=found)
+
+
+def _steps(time: TimeTable) -> int:
+    """Number of steps of the nominal length."""
+    return ceil(time.end / time.step * (1.0 - 1e-12))
 
 
 def time_in_words(least: float, most: float) -> str:

@@ -13,13 +13,19 @@ from rigidfluid.core.setup.model import Model
 
 QUESTION = "units"
 
-_MIXED = (("g/cm³", (0.1, 30.0), "m/s²", 9.81, 981.0), ("kg/m³", (100.0, 30000.0), "cm/s²", 981.0, 9.81))
+_LIGHT, _HEAVY = (0.1, 30.0), (100.0, 30000.0)
+_MIXED = (
+    ("g/cm³", _LIGHT, "m/s²", 9.81, 981.0),
+    ("kg/m³", _HEAVY, "cm/s²", 981.0, 9.81),
+    ("g/cm³", _LIGHT, "mm/s²", 9810.0, 981.0),
+    ("kg/m³", _HEAVY, "mm/s²", 9810.0, 9.81),
+)
 """Densities of liquids and solids in a unit, the Earth's gravity in another system's, and in that of the densities."""
 
 
 def unit_findings(model: Model, system: System) -> Iterator[Finding]:
-    """Tell speed, Reynolds number and way of the fastest body; a warning where gravity is the Earth's in m/s² and all
-    densities are as in g/cm³, or in cm/s² and as in kg/m³."""
+    """Tell speed, Reynolds number and way of the fastest body; a warning where gravity is the Earth's in another unit
+    than densities of liquids and solids are in."""
     speeds, fluid = system.loads.travel_speed, system.fluid
     if fluid is None or speeds is None or not np.any(speeds > 0.0):
         return
@@ -31,11 +37,14 @@ def unit_findings(model: Model, system: System) -> Iterator[Finding]:
     text = f"{name} may reach a speed of {figure(speed)} and a Reynolds number of {figure(reynolds)}, and go"
     text += f" {figure(speed * model.time.end / diameter)} diameters until time.end"
     densities = [fluid.density, *(body.density for body in model.bodies)]
-    gravity = float(np.linalg.norm(model.gravity or 0.0))
+    vector = np.zeros(model.dimension) if model.gravity is None else np.asarray(model.gravity, dtype=float)
+    gravity = float(np.linalg.norm(vector))
     for unit, (least, most), other, earth, meant in _MIXED:
-        if abs(gravity / earth - 1.0) < 0.01 and all(least <= density <= most for density in densities):
+        named = model.units is not None and f"{model.units.length}/{model.units.time}²" == other
+        if not named and abs(gravity / earth - 1.0) < 0.01 and all(least <= density <= most for density in densities):
             text += f"; gravity is the Earth's in {other}, and densities are as in {unit}"
-            remedy = f"Set fluid.gravity to {meant:g}, or ignore this if it is intended."
+            asked = ", ".join(f"{part * meant / gravity + 0.0:.6g}" for part in vector)
+            remedy = f"Set gravity = [{asked}] in [fluid]; if it is intended, name the units in `[scene] units`."
             yield Finding("warning", QUESTION, (name,), text, remedy, found)
             return
     yield Finding("note", QUESTION, (name,), text, found=found)

@@ -28,9 +28,9 @@ NewFile = Annotated[Path, typer.Argument(parser=named_path, metavar="FILE", help
 Dimension = Annotated[int | None, typer.Option(min=2, max=3, help="Number of space dimensions; 2 if not given.")]
 Bodies = Annotated[int | None, typer.Option(min=1, max=200, help="Number of bodies; 1 if not given.")]
 ShapeName = Annotated[Shape | None, typer.Option(help="Of the bodies; sphere if not given: in 2D a disk.")]
-Size = Annotated[float | None, typer.Option(min=0.0, help="Width of the box in the units; 2 cm if not given.")]
+Size = Annotated[float | None, typer.Option(help="Width of the box in the units; 2 cm if not given.")]
 FluidName = Annotated[Fluid | None, typer.Option(help="In the box; oil if not given.")]
-Gravity = Annotated[float | None, typer.Option(min=0.0, help="Downwards, in the units; the Earth's if not given.")]
+Gravity = Annotated[float | None, typer.Option(help="Downwards, in the units; the Earth's if not given.")]
 UnitsName = Annotated[Units | None, typer.Option(help="Of lengths, with s and g, kg or mg.")]
 ExampleName = Annotated[
     str | None,
@@ -102,6 +102,7 @@ def _print_examples() -> None:
 
     table = Table("name", "what it shows", "CPU time", box=SIMPLE_HEAD, padding=(0, 1))
     for one in examples():
-        table.add_row(Text(one.name), Text(one.shows), time_in_words(one.least, one.most))
+        errors = f" `rigidfluid check`: {one.errors} error{'s' * (one.errors > 1)}." if one.errors else ""
+        table.add_row(Text(one.name), Text(one.shows + errors), time_in_words(one.least, one.most))
     make_console().print(table)
     tell("`rigidfluid examples NAME` copies one here. CPU times are what `rigidfluid check` foretells for one core.")

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from pydantic import Field
@@ -25,8 +26,8 @@ class BoxOptions(PartOptions):
     """Keys of the ``[domain]`` table with type ``box``: ``lower`` and ``upper``, its corners [length].
 
     Its surfaces are ``left`` and ``right`` along x, ``bottom`` and ``top`` along y, ``back`` and ``front`` along z;
-    ``xmin`` and ``xmax``, ``ymin`` and ``ymax``, ``zmin`` and ``zmax`` in a ``[[boundary]]`` table are other names of
-    these.
+    ``xmin`` and ``xmax``, ``ymin`` and ``ymax``, ``zmin`` and ``zmax`` are other names of these, which results have too
+    where a ``[[boundary]]`` or ``[[interaction]]`` table uses them.
     """
 
     lower: tuple[float, ...] = Field(description="Corner of the box with the smallest coordinates [length]")
@@ -65,6 +66,7 @@ class Box(Domain):
     also_called: ClassVar[tuple[str, ...]] = ("cube", "rectangle", "square")
     Options: ClassVar[type[PartOptions]] = BoxOptions
     options: BoxOptions
+    _called: Collection[str] = ()
 
     def __init__(self, options: BoxOptions, dimension: int) -> None:
         super().__init__(options, dimension)
@@ -113,20 +115,29 @@ class Box(Domain):
             side.name = self.names[int(np.argmin(distance))]
         return shape
 
+    def called(self, names: Collection[str]) -> Self:
+        """The same box with faces called ``xmin`` … ``zmax`` where these are among the ``names``."""
+        other = type(self)(self.options, self.dimension)
+        other.periodic, other._called = self.periodic, names
+        return other
+
     def between(self, axis: int, lower: float, upper: float) -> Box:
         """The box with these coordinates along an axis instead of its own."""
         low, high = self._lower.tolist(), self._upper.tolist()
         low[axis], high[axis] = lower, upper
-        return Box(BoxOptions(lower=tuple(low), upper=tuple(high)), self.dimension)
+        return Box(BoxOptions(lower=tuple(low), upper=tuple(high)), self.dimension).called(self._called)
 
     def _face(self, axis: int, side: int) -> Piece:
         lower, upper = self._lower.copy(), self._upper.copy()
         lower[axis] = upper[axis] = (self._lower, self._upper)[side][axis]
         normal = np.zeros(self.dimension)
         normal[axis] = 1.0 - 2.0 * side
+        name, other_name = NAMES[2 * axis + side], "xyz"[axis] + ("min", "max")[side]
+        if other_name in self._called:
+            name, other_name = other_name, name
         return Piece(
-            name=NAMES[2 * axis + side],
-            other_name="xyz"[axis] + ("min", "max")[side],
+            name=name,
+            other_name=other_name,
             shape=Plane((self._lower, self._upper)[side], normal, (lower, upper)),
             area=float(np.prod(np.delete(self.size, axis))),
             coordinates=_FaceCoordinates(self._lower, self._upper, axis),

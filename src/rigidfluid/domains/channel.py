@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 from pydantic import Field
 
@@ -21,7 +22,7 @@ class ChannelOptions(BoxOptions):
     ``[[domain.obstacle]]`` a fixed body of any type, with a surface of its own.
 
     The faces of the box are called ``left`` and ``right`` along x, ``bottom`` and ``top`` along y, ``back`` and
-    ``front`` along z, or, in a ``[[boundary]]`` table, ``xmin``, ``xmax``, ``ymin``, ``ymax``, ``zmin`` and ``zmax``.
+    ``front`` along z, or ``xmin``, ``xmax``, ``ymin``, ``ymax``, ``zmin`` and ``zmax``.
     """
 
     obstacle: tuple[NestedBodyTable, ...] = Field(
@@ -62,6 +63,12 @@ class Channel(Domain):
     def contains(self, points: FloatArray) -> BoolArray:
         """Which of ``points`` (N, d) are in the box and in no obstacle, (N,)."""
         return self._box.contains(points) & ~self._obstacles.hold(points)
+
+    def called(self, names: Collection[str]) -> Self:
+        """The same channel with faces called ``xmin`` … ``zmax`` where these are among the ``names``."""
+        other = type(self)(self.options, self.dimension)
+        other.periodic, other._box = self.periodic, self._box.called(names)
+        return other
 
     def cad_shape(self, unit: float) -> Any:
         """The box minus the obstacles, as a ``netgen.occ`` face or solid with lengths over ``unit``."""

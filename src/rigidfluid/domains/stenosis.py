@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from pydantic import Field
@@ -60,8 +61,8 @@ class Stenosis(Domain):
     def pieces(self) -> tuple[Piece, ...]:
         """The sides of the rectangle, of which the bumps take a part of bottom and top, then the bumps."""
         left, right, *walls = self._box.pieces
-        narrower = {wall.name: wall.area - 2.0 * self._bumps[wall.name].half_width for wall in walls}
-        flat = [replace(wall, area=narrower[wall.name], coordinates=None) for wall in walls]
+        arcs = zip(walls, self._bumps.values(), strict=True)
+        flat = [replace(wall, area=wall.area - 2.0 * arc.half_width, coordinates=None) for wall, arc in arcs]
         bumps = [Piece(f"{name}_bump", arc, arc.length) for name, arc in self._bumps.items()]
         return (left, right, *flat, *bumps)
 
@@ -81,6 +82,12 @@ class Stenosis(Domain):
         for arc in self._bumps.values():
             inside &= arc.signed_distance(points) > 0.0
         return inside
+
+    def called(self, names: Collection[str]) -> Self:
+        """The same channel with sides called ``xmin`` … ``ymax`` where these are among the ``names``."""
+        other = type(self)(self.options, self.dimension)
+        other.periodic, other._box = self.periodic, self._box.called(names)
+        return other
 
     def cad_shape(self, unit: float) -> Any:
         """The rectangle minus two disks, as a ``netgen.occ`` face with lengths over ``unit``."""

@@ -21,12 +21,14 @@ FOLDER = _IN_WHEEL if _IN_WHEEL.is_dir() else _IN_CLONE
 
 @dataclass(frozen=True, slots=True)
 class Example:
-    """A scene: what it ``shows``, and the ``least`` and ``most`` CPU time that a run takes [s]."""
+    """A scene: what it ``shows``, the ``least`` and ``most`` CPU time that a run takes [s], and how many ``errors`` a
+    check finds."""
 
     name: str
     shows: str
     least: float
     most: float
+    errors: int
 
 
 def example_names() -> list[str]:
@@ -38,7 +40,8 @@ def examples() -> list[Example]:
     """All scenes, those that cost least first."""
     with (FOLDER / "costs.csv").open(encoding="utf-8", newline="") as file:
         costs = {row["scene"]: (float(row["least"]), float(row["most"])) for row in csv.DictReader(file)}
-    found = [Example(name, _first_sentence(_comment(name)), *costs[name]) for name in example_names()]
+    comments = {name: _comment(name) for name in example_names()}
+    found = [Example(name, _first_sentence(text), *costs[name], _errors(text)) for name, text in comments.items()]
     return sorted(found, key=lambda one: (one.most, one.name))
 
 
@@ -68,6 +71,12 @@ def _comment(name: str) -> str:
     lines = re.match(r"(#.*\n)+", (FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
     assert lines is not None
     return " ".join(line.removeprefix("#").strip() for line in lines[0].splitlines())
+
+
+def _errors(comment: str) -> int:
+    """The number of errors of a check that a comment tells of."""
+    told = re.search(r"`rigidfluid check` finds (\d+)", comment)
+    return int(told[1]) if told else 0
 
 
 def _first_sentence(text: str) -> str:

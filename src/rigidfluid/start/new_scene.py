@@ -9,8 +9,9 @@ from math import ceil
 
 from rigidfluid.checks import Finding, Report, check
 from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.scene.validation import LARGEST, SMALLEST
 from rigidfluid.errors import SceneError
-from rigidfluid.start.scene_text import Numbers, scene_text
+from rigidfluid.start.scene_text import EARTH, UNITS, Numbers, scene_text
 from rigidfluid.start.wishes import Wishes
 
 _TRIALS = 8
@@ -25,6 +26,7 @@ def new_scene(wishes: Wishes, name: str) -> tuple[str, Report]:
     """
     if wishes.shape == "polygon" and wishes.dimension == 3:
         raise SceneError("--shape", "'polygon' in 3D", "sphere, ellipsoid", "Choose one, or --dimension 2.")
+    _check_numbers(wishes)
     numbers = _paced(wishes, name)
     for _ in range(_TRIALS):
         text, report = _checked(wishes, name, numbers)
@@ -33,7 +35,23 @@ def new_scene(wishes: Wishes, name: str) -> tuple[str, Report]:
             return text, report
         numbers = _adopted(numbers, doubts)
     remedy = "Choose another --size or --fluid; slow and small bodies in viscous fluids cost least."
+    if any(finding.question == "units" for finding in doubts):
+        earth = EARTH / UNITS[wishes.units][2]
+        remedy = f"Set --gravity {earth:g}, or leave it out for the Earth's, or choose other --units."
     raise SceneError("new", f"with these numbers a check still warns: {doubts[0].text}", None, remedy)
+
+
+def _check_numbers(wishes: Wishes) -> None:
+    """Refuse, with SceneError, a width and a gravity with which there is no scene."""
+    if not SMALLEST <= wishes.width <= LARGEST:
+        found, allowed = f"{wishes.width:g}", f"a width from {SMALLEST:g} to {LARGEST:g}"
+        raise SceneError("--size", found, allowed, "Give the width of the box in the units, or leave it out.")
+    gravity = wishes.gravity
+    if gravity is not None and not (gravity == 0.0 or SMALLEST <= gravity <= LARGEST):
+        remedy = f"It acts downwards: leave the sign out, --gravity {-gravity:g}." if -LARGEST <= gravity < 0 else ""
+        allowed = f"0, or a number from {SMALLEST:g} to {LARGEST:g}"
+        remedy = remedy or "Leave it out for the Earth's; another direction is set in the file, as a vector."
+        raise SceneError("--gravity", f"{gravity:g}", allowed, remedy)
 
 
 def _paced(wishes: Wishes, name: str) -> Numbers:
@@ -46,7 +64,11 @@ def _paced(wishes: Wishes, name: str) -> Numbers:
 
 def _checked(wishes: Wishes, name: str, numbers: Numbers) -> tuple[str, Report]:
     text = scene_text(wishes, name, numbers)
-    return text, check(scene_from_dict(tomllib.loads(text)))
+    try:
+        return text, check(scene_from_dict(tomllib.loads(text)))
+    except SceneError as error:
+        found = f"numbers of which no scene can be made ({error})"
+        raise SceneError("--size or --gravity", found, None, "Choose others, or leave them out.") from None
 
 
 def _adopted(numbers: Numbers, doubts: Sequence[Finding]) -> Numbers:

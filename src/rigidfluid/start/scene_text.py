@@ -15,7 +15,9 @@ UNITS = {"cm": ("cm", "g", 1e-2, 1e-3), "m": ("m", "kg", 1.0, 1.0), "mm": ("mm",
 FLUIDS = {"water": (998.0, 1.00e-3), "oil": (910.0, 0.084), "glycerine": (1260.0, 1.41)}
 """Density [kg/m³] and viscosity [Pa·s] at 20 °C; the oil is that of olives."""
 
-_EARTH = 9.81
+EARTH = 9.81
+"""Its gravity [m/s²]."""
+
 _OVER_FLUID = 1.25
 """Density of bodies over that of the fluid."""
 
@@ -57,13 +59,14 @@ def scene_text(wishes: Wishes, name: str, numbers: Numbers) -> str:
     wet = wishes.fluid in FLUIDS
     density, viscosity = FLUIDS.get(wishes.fluid, (1000.0, 0.0))
     per_volume = metre**3 / kilogram
-    gravity = _EARTH / metre if wishes.gravity is None else wishes.gravity
+    gravity = EARTH / metre if wishes.gravity is None else wishes.gravity
     upper = [wishes.width, numbers.height] if wishes.dimension == 2 else [wishes.width, wishes.width, numbers.height]
     down = [0.0] * (wishes.dimension - 1) + [-gravity]
     filled = f" of {wishes.fluid}" if wet else ", without a fluid"
     parts = [
         f"# {_bodies(wishes)} in a box{filled}. Units: {length}, {mass}, s.",
-        f'[scene]\nname = "{name}"\ndimension = {wishes.dimension}',
+        f'[scene]\nname = "{name}"\ndimension = {wishes.dimension}\n'
+        f'units = {{ length = "{length}", time = "s", mass = "{mass}" }}  # names alone: no number depends on them',
         "[fluid]\n"
         + (
             f"density = {density * per_volume:.4g}  # {mass}/{length}³, of {wishes.fluid}\n"

@@ -22,7 +22,7 @@ def test_metres_in_a_scene_of_centimetres_are_found_with_speed_and_reynolds_numb
     finding = told(1.0, 9.81)
     assert finding.grade == "warning"
     assert "gravity is the Earth's in m/s², and densities are as in g/cm³" in finding.text
-    assert finding.remedy.startswith("Set fluid.gravity to 981,")
+    assert finding.remedy.startswith("Set gravity = [0, -981] in [fluid];")
     speed = finding.found["speed"]
     assert isinstance(speed, float)
     assert finding.found["reynolds"] == pytest.approx(0.25 * speed / 0.1)
@@ -31,11 +31,33 @@ def test_metres_in_a_scene_of_centimetres_are_found_with_speed_and_reynolds_numb
 
 @pytest.mark.parametrize(
     ("density", "gravity", "grade"),
-    [(1.0, 981.0, "note"), (1000.0, 981.0, "warning"), (1000.0, 9.81, "note"), (1.0, 10.0, "note")],
+    [
+        (1.0, 981.0, "note"),
+        (1.0, 9810.0, "warning"),
+        (1000.0, 9.81, "note"),
+        (1000.0, 981.0, "warning"),
+        (1000.0, 9810.0, "warning"),
+        (1.0, 10.0, "note"),
+    ],
 )
-def test_one_system_is_not_warned_of(density: float, gravity: float, grade: str) -> None:
+def test_mixed_systems_are_warned_of_and_one_is_not(density: float, gravity: float, grade: str) -> None:
     assert told(density, gravity).grade == grade
 
 
 def test_a_scene_without_a_fluid_is_not_asked() -> None:
     assert [one for one in check(load_scene(SCENES / "dry_bounce.toml")).findings if one.question == "units"] == []
+
+
+def test_gravity_in_space_keeps_its_direction() -> None:
+    fluid = {"backend": "scikit-fem", "density": 1.0, "viscosity": 0.1, "gravity": [0.0, 0.0, -9.81]}
+    scene = load_scene(SCENES / "falling_sphere.toml", [f"fluid.gravity={fluid['gravity']}"])
+    (finding,) = [one for one in check(scene).findings if one.question == "units"]
+    assert finding.remedy.startswith("Set gravity = [0, 0, -981] in [fluid];")
+
+
+def test_gravity_in_the_units_that_the_scene_names_is_not_doubted() -> None:
+    units = ['scene.units={ length = "mm", time = "s", mass = "mg" }', "fluid.gravity=[0.0, -9810.0]"]
+    (finding,) = [
+        one for one in check(load_scene(SCENES / "falling_disk.toml", units)).findings if one.question == "units"
+    ]
+    assert finding.grade == "note"

@@ -37,9 +37,23 @@ def test_costs_are_those_of_a_check() -> None:
     from rigidfluid.checks import check
 
     costs = {one.name: (one.least, one.most) for one in examples()}
-    for name in ("falling_disk", "rebound", "two_spheres"):
+    for name in ("falling_disk", "rebound", "two_spheres", "dry_bounce"):
         (found,) = [one.found for one in check(load_scene(SCENES / f"{name}.toml")).findings if one.question == "time"]
         assert costs[name] == pytest.approx([found["least"] * found["speed"], found["most"] * found["speed"]], rel=0.06)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_errors_of_a_check_are_those_that_the_scene_tells_of(name: str) -> None:
+    from rigidfluid import load_scene
+    from rigidfluid.checks import check
+
+    (told,) = [one.errors for one in examples() if one.name == name]
+    assert check(load_scene(SCENES / f"{name}.toml")).count("error") == told
+
+
+def test_the_command_tells_of_errors_of_a_check() -> None:
+    (line,) = [one for one in rigidfluid_command("examples").stdout.splitlines() if " fast_disk " in one]
+    assert "`rigidfluid check`: 1 error." in line
 
 
 def test_the_command_lists_all_with_their_costs() -> None:

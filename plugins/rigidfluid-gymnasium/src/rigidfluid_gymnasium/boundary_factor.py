@@ -36,16 +36,22 @@ class BoundaryFactor(Action):
     def followed_by(self, model: Model, course: Course) -> Model:
         """The model with the values scaled; raises SceneError where none are prescribed, or a factor at the bounds lets
         more fluid in than out."""
-        if self.name not in model.domain.names:
-            allowed = f"a surface of the domain: {', '.join(model.domain.names)}"
+        if self._surface(model) is None:
+            allowed = f"a surface of the domain: {model.domain.names_in_words}"
             raise SceneError("boundary", repr(self.name), allowed, "Name another.")
         for limit in self.limits(model.dimension):
             self._scaled(model, Course(limit))
         return self._scaled(model, course)
 
     def _scaled(self, model: Model, course: Course) -> Model:
-        maker = partial(_scaled_condition, make=model.boundary.get(self.name, NoSlip), course=course)
-        return replace(model, boundary={**model.boundary, self.name: maker})
+        surface = self._surface(model)
+        maker = partial(_scaled_condition, make=model.boundary.get(surface, NoSlip), course=course)
+        return replace(model, boundary={**model.boundary, surface: maker})
+
+    def _surface(self, model: Model) -> str | None:
+        """Name of the surface in the model; None where there is none."""
+        pieces = model.domain.pieces
+        return next((piece.name for piece in pieces if self.name in (piece.name, piece.other_name)), None)
 
 
 @dataclass(frozen=True)

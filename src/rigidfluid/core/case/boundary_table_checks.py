@@ -29,10 +29,10 @@ def check_boundary_tables(tables: Sequence[BoundaryTable], domain: Domain, end: 
 
 def check_surface_names(tables: Sequence[BoundaryTable], domain: Domain) -> None:
     """Refuse, with SceneError, unknown names of surfaces."""
-    allowed = ("all", *domain.names)
-    known = (*allowed, *(piece.other_name for piece in domain.pieces))
+    known = ("all", *domain.names, *(piece.other_name for piece in domain.pieces))
+    allowed = f"all, {domain.names_in_words}"
     raise_all(
-        SceneError(f"boundary.{number}.on", repr(table.on), ", ".join(allowed), "Name a surface of the domain.")
+        SceneError(f"boundary.{number}.on", repr(table.on), allowed, "Name a surface of the domain.")
         for number, table in enumerate(tables)
         if table.on not in known
     )

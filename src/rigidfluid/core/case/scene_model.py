@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import lru_cache, singledispatch
 from typing import NamedTuple
 
@@ -77,6 +78,8 @@ def _model(scene: Scene, registry: Registry) -> Model:
         ask(check_contact_table, scene.contact, scene.interaction)
         domain = ask(scene_domain, scene.domain, scene.boundary, registry, scene.dimension)
         if domain is not None:
+            domain = domain.called(_names_used(scene))
+        if domain is not None:
             ask(check_boundary_tables, scene.boundary, domain, scene.time.end)
         mechanisms = ask(placed_mechanisms, scene.mechanism, registry, scene.dimension)
         bodies = tuple(
@@ -120,7 +123,7 @@ def _compose(scene: Scene, registry: Registry, parts: _Parts) -> Model:
         boundary=condition_makers(scene.boundary, domain),
         mechanisms=mechanisms,
         joints=joints,
-        laws=tuple(laws),
+        laws=tuple(_with_names_of(domain, law) for law in laws),
         detector=detector,
         stepping=ContactStepping(
             scene.contact.substeps, scene.contact.stepping == "implicit", scene.contact.impact_speed
@@ -132,6 +135,17 @@ def _compose(scene: Scene, registry: Registry, parts: _Parts) -> Model:
         registry=registry,
     )
     return model.told_by(scene, why)
+
+
+def _names_used(scene: Scene) -> set[str]:
+    """Names of surfaces in the scene's tables."""
+    return {table.on for table in scene.boundary} | {name for table in scene.interaction for name in table.names or ()}
+
+
+def _with_names_of(domain: Domain, law: ContactLaw) -> ContactLaw:
+    """The law with the domain's names of surfaces, where its table has other names of these."""
+    names = {piece.other_name: piece.name for piece in domain.pieces}
+    return replace(law, names=tuple(names.get(name, name) for name in law.names))
 
 
 def scene_domain(table: DomainTable, boundary: Sequence[BoundaryTable], registry: Registry, dimension: int) -> Domain:

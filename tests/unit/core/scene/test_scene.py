@@ -483,6 +483,30 @@ def test_faces_are_named_by_axis_too(name: str, other: str) -> None:
     assert sum(slips[0]) == 1
 
 
+def test_the_name_that_a_scene_uses_of_a_face_is_shown() -> None:
+    law = {"law": "barrier", "range": 0.1, "epsilon": 1.0}
+    for named, asked in (("zmin", "back"), ("back", "zmin")):
+        scene = in_3d(boundary=[{"on": named, "type": "wall"}], interaction=[{**law, "names": [asked]}])
+        model = model_of(scene_from_dict(scene))
+        shown = "zmin"  # it is used in one of the tables
+        assert shown in model.surfaces
+        assert shown in [condition.name for condition in model.conditions]
+        assert model.laws[0].names == (shown,)
+    assert "back" in model_of(scene_from_dict(in_3d(boundary=[{"on": "back", "type": "wall"}]))).surfaces
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"boundary": [{"on": "zmim", "type": "wall"}]},
+        {"interaction": [{"law": "barrier", "range": 0.1, "epsilon": 1.0, "names": ["zmim"]}]},
+    ],
+)
+def test_both_names_of_faces_are_told_where_another_is_refused(wrong: dict[str, Any]) -> None:
+    with pytest.raises(SceneError, match=r"zmim.*back or zmin, front or zmax"):
+        scene_from_dict(in_3d(**wrong))
+
+
 def test_angle_in_3d_is_refused() -> None:
     with pytest.raises(SceneError, match=r"body\.0\.angle.*quaternion"):
         scene_from_dict(in_3d(**{"body.0.angle": 1.0}))
