@@ -13,6 +13,7 @@ from rigidfluid import __version__
 from rigidfluid.cli import console
 from rigidfluid.cli.console import (
     FOUND_ERRORS,
+    complain,
     make_console,
     refusal,
     reported,
@@ -217,7 +218,8 @@ def movie(
 
 @app.command()
 def study(study: StudyFile, out: OutFolder = None, resume: Continue = True, jobs: Jobs = 1) -> None:
-    """Run a scene or a kernel with many settings; plot the error against the run time, or figures over parameters."""
+    """Run a scene or a kernel with many settings; plot the error against the run time, or figures over parameters; exit
+    code 1 if all runs fail."""
     with reported("The same command goes on with the runs that are not done."):
         from rigidfluid.post.studies import load_study, run_study
 
@@ -227,6 +229,10 @@ def study(study: StudyFile, out: OutFolder = None, resume: Continue = True, jobs
             results, written = run_study(loaded, folder, fresh=not resume, jobs=jobs, progress=show)
         print_study(results)
         tell(f"wrote to {folder}: {', '.join(path.name for path in written)}")
+    if results.first_failure:
+        complain(f"the first failed run, {results.first_failure} {written[0]} has the reasons of all.")
+    if not results.outcomes:
+        raise typer.Exit(FOUND_ERRORS)
 
 
 @app.command()

@@ -100,7 +100,7 @@ def _model(scene: Scene, registry: Registry) -> Model:
 
 
 class _Parts(NamedTuple):
-    """What the tables of a scene say, as objects of a model."""
+    """Objects of a model that the tables of a scene describe."""
 
     domain: Domain
     bodies: tuple[RigidBody, ...]

@@ -28,7 +28,7 @@ class Ask:
 
     @property
     def subjects(self) -> list[str]:
-        """What the errors are about."""
+        """Subjects of the errors, one by one."""
         return [error.subject for error in _parts(self.errors)]
 
 

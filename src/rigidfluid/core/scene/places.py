@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from bisect import bisect_left
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -29,6 +29,21 @@ def told_in_file(path: Path, assignments: Sequence[str] = ()) -> Iterator[None]:
         order = {id(one): _tell_place(one, path, lines, assignments) for one in errors}
         if isinstance(error, SceneErrors):
             raise SceneErrors(sorted(errors, key=lambda one: order[id(one)])) from None
+        raise
+
+
+@contextmanager
+def told_where_set(path: Path, keys: Mapping[str, Sequence[str]]) -> Iterator[None]:
+    """Say in errors of a scene in which line of another file the values stand that tables of it set; ``keys`` of the
+    scene by table."""
+    try:
+        yield
+    except (SceneError, PluginError) as error:
+        lines = path.read_text(encoding="utf-8").splitlines()
+        for one in error.errors if isinstance(error, SceneErrors) else [error]:
+            for table in keys:
+                if any(f"{one.subject}.".startswith(f"{key}.") for key in keys[table]):
+                    one.place = f"{path}:{line_of(f'{table}.{one.subject}', lines)}"
         raise
 
 

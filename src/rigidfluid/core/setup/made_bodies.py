@@ -1,4 +1,4 @@
-"""What is asked of bodies that could be made where other parts of a scene are refused."""
+"""Checks of the bodies that could be made where other parts of a scene are refused."""
 
 from __future__ import annotations
 

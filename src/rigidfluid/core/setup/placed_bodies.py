@@ -18,7 +18,7 @@ from rigidfluid.registry import Registry
 
 
 class Arrangement:
-    """What follows from bodies, mechanisms and the domain that they are in."""
+    """Properties that follow from bodies, mechanisms and the domain that they are in."""
 
     domain: Domain
     bodies: tuple[RigidBody, ...]

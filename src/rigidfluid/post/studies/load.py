@@ -99,7 +99,7 @@ def _check_samples(tables: StudyFile) -> None:
 def _check_reference(tables: StudyFile) -> None:
     if tables.error is None:
         return
-    if tables.error.reference is None and not (tables.parameters or tables.random):
+    if tables.error.reference is None and tables.vary and not (tables.parameters or tables.random):
         allowed, remedy = 'a number, or "finest"', "Add the key 'reference', or vary [parameters]."
         raise SceneError("error.reference", "nothing", allowed, remedy)
     if tables.error.relative and not tables.error.reference:

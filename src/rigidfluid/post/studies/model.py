@@ -121,6 +121,12 @@ class StudyFile(StrictTable):
     random: RandomTable | None = None
     error: ErrorTable | None = Field(default=None, description="The error; a kernel has its own")
 
+    def set_keys(self) -> dict[str, list[str]]:
+        """Keys of the scene that each table sets."""
+        random = [] if self.random is None else list(self.random.parameters)
+        listed = {name: list(getattr(self, name)) for name in ("vary", "parameters", "set")}
+        return {**listed, "random.parameters": random}
+
 
 MOST_RUNS = 10_000
 """Largest number of runs in a study: all of them are held in memory and in one table."""

@@ -28,7 +28,7 @@ def parameter_plot(results: Results) -> Figure:
     figure = new_figure(9.0, 7.0 if errors else 4.5)
     panels = figure.subplots(2 if errors else 1, 1, sharex=True, squeeze=False)[:, 0]
     shown = _draw(panels[0], results, figures)
-    panels[0].set_ylabel(escape_dollars(results.target.of))
+    panels[0].set_ylabel(escape_dollars(results.target.figure_label))
     if errors:
         _draw(panels[1], results, errors)
         panels[1].set_yscale("log")
@@ -66,7 +66,7 @@ def _places(values: list[Any]) -> dict[str, float]:
 def _label_axis(axes: Axes, results: Results) -> None:
     first = results.study.parameters[0]
     values = results.study.values(first)
-    axes.set_xlabel(escape_dollars(first))
+    axes.set_xlabel(escape_dollars(results.target.axis_label(first)))
     if not _are_numbers(values):
         axes.set_xticks(range(len(values)), [escape_dollars(text_of(value)) for value in values])
     else:

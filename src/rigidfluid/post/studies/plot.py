@@ -46,7 +46,8 @@ def error_plot(results: Results) -> Figure:
 def error_label(results: Results) -> str:
     """Label of the error axis: the quantity and its reference."""
     kind = "relative error" if results.is_relative else "error"
-    return f"{kind} of {results.target.of}\nagainst {results.target.against}"
+    of = results.target.of if results.is_relative else results.target.figure_label
+    return f"{kind} of {of}\nagainst {results.target.against}"
 
 
 def _lines(results: Results) -> dict[tuple[str, ...], list[tuple[float, float]]]:

@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import TypeVar
 
 from rigidfluid.post.studies.model import FINEST, Study
-from rigidfluid.post.studies.rows import Row
+from rigidfluid.post.studies.rows import Row, words
 from rigidfluid.post.studies.sampled import Sampled, sampled
 from rigidfluid.post.studies.strict_table import Settings
 from rigidfluid.post.studies.subject import Outcome, Target
@@ -39,6 +39,13 @@ class Results:
         """Outcomes of the runs that did not fail, by fingerprint."""
         done = {key: self.rows[key].outcome for key in self.prints if key in self.rows}
         return {key: outcome for key, outcome in done.items() if outcome is not None}
+
+    @property
+    def first_failure(self) -> str:
+        """The reason of the first run that failed, with its settings; empty where none has."""
+        rows = ((settings, self.rows.get(key)) for settings, key in zip(self.plan, self.prints, strict=True))
+        failed = ((settings, row) for settings, row in rows if row is not None and row.outcome is None)
+        return next((f"{words(settings)}: {row.message}" for settings, row in failed), "")
 
     @cached_property
     def samples(self) -> list[Sampled]:

@@ -34,7 +34,7 @@ def samples_plot(results: Results, samples: Sequence[Sampled]) -> Figure:
         first = first or axes
         _draw_samples(axes, results, samples, name)
         if place % columns == 0:
-            axes.set_ylabel(escape_dollars(results.target.of))
+            axes.set_ylabel(escape_dollars(results.target.figure_label))
         else:
             axes.tick_params(labelleft=False)
     if has_indices:
@@ -54,7 +54,7 @@ def _draw_samples(axes: Axes, results: Results, samples: Sequence[Sampled], name
         axes.axhline(median, color=colour, linewidth=1.0)
         axes.axhspan(low, high, color=colour, alpha=0.1, linewidth=0.0)
     scale_axis(axes, values.tolist())
-    axes.set_xlabel(escape_dollars(name))
+    axes.set_xlabel(escape_dollars(results.target.axis_label(name)))
 
 
 def _draw_indices(axes: Axes, results: Results, samples: Sequence[Sampled]) -> None:

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from copy import deepcopy
 from typing import Any
 
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.run.run import simulate
 from rigidfluid.core.scene.overrides import assign
-from rigidfluid.core.scene.places import line_of, told_in_file
+from rigidfluid.core.scene.places import told_in_file, told_where_set
 from rigidfluid.core.scene.scene import Scene, read_toml
-from rigidfluid.errors import PluginError, RigidfluidError, SceneError, SceneErrors
+from rigidfluid.errors import RigidfluidError
+from rigidfluid.post.reports.units import Units
 from rigidfluid.post.studies.figure import check_figure, read_figure
 from rigidfluid.post.studies.model import ErrorTable, Study
+from rigidfluid.post.studies.quantities import figure_unit, key_unit
 from rigidfluid.post.studies.strict_table import Settings
 from rigidfluid.post.studies.subject import Outcome, Target
 
@@ -37,7 +38,7 @@ class SceneSubject:
         first = self._first_scene(study)
         with told_in_file(study.path):
             check_figure(self._figure, first)
-        self.target = _target(study.tables.study.label, study.tables.error)
+        self.target = _target(study, study.tables.error, first)
 
     def read(self, settings: Settings) -> Settings:
         """All settings: a scene refuses what it does not read."""
@@ -75,7 +76,7 @@ class SceneSubject:
             except RigidfluidError as error:
                 errors.append(error)
         assert study.scene is not None
-        with told_in_file(study.scene), _told_in_study(study):
+        with told_in_file(study.scene), told_where_set(study.path, study.tables.set_keys()):
             raise errors[0]
 
     def _warm_up(self, scene: Scene) -> None:
@@ -85,27 +86,10 @@ class SceneSubject:
             self._warm.add(scene.fluid.backend)
 
 
-@contextmanager
-def _told_in_study(study: Study) -> Iterator[None]:
-    """Say in errors of a scene in which line of the study's file the values stand that are set there."""
-    tables = study.tables
-    random = {} if tables.random is None else tables.random.parameters
-    set_here: dict[str, Iterable[str]] = {
-        "vary": tables.vary,
-        "parameters": tables.parameters,
-        "random.parameters": random,
-        "set": tables.set,
-    }
-    try:
-        yield
-    except (SceneError, PluginError) as error:
-        for one in error.errors if isinstance(error, SceneErrors) else [error]:
-            for table, values in set_here.items():
-                if any(f"{one.subject}.".startswith(f"{key}.") for key in values):
-                    one.place = f"{study.path}:{line_of(f'{table}.{one.subject}', study.text.splitlines())}"
-        raise
-
-
-def _target(label: str, error: ErrorTable) -> Target:
+def _target(study: Study, error: ErrorTable, scene: Scene) -> Target:
+    names, label = scene.scene.units, study.tables.study.label
+    units = Units(None if names is None else names.model_dump(), scene.dimension)
+    named = {knob: key_unit(scene, knob, units) for knob in study.knobs}
+    named[""] = "" if label else figure_unit(error.figure, units)  # a label has its unit, if its author wanted one
     against = f"{error.reference:g}" if isinstance(error.reference, float) else "the finest run"
-    return Target(str(error.figure), error.reference, label or str(error.figure), against, error.relative)
+    return Target(str(error.figure), error.reference, label or str(error.figure), against, error.relative, named)

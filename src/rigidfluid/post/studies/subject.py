@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Literal, Protocol
 
 from rigidfluid.post.studies.strict_table import Settings
@@ -24,6 +24,7 @@ class Target:
     """Name of the ``figure``, and its ``reference`` value, "finest" for its value in the finest run, or None.
 
     ``of`` names the quantity with the error, ``against`` its reference, which divides the error with ``relative``.
+    ``units``: units of the figure ("") and of knobs by name, each in brackets after a space, or nothing.
     """
 
     figure: str
@@ -31,6 +32,16 @@ class Target:
     of: str
     against: str
     relative: bool
+    units: Mapping[str, str] = field(default_factory=dict)
+
+    def axis_label(self, knob: str) -> str:
+        """Name of a knob with its unit."""
+        return f"{knob}{self.units.get(knob, '')}"
+
+    @property
+    def figure_label(self) -> str:
+        """The quantity with its unit."""
+        return f"{self.of}{self.units.get('', '')}"
 
 
 class Subject(Protocol):

@@ -22,7 +22,7 @@ from rigidfluid.core.output.records import columns
 from rigidfluid.core.output.results_folder import take_folder
 from rigidfluid.core.run.summary import FIGURES
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.errors import OutputError, SceneError
+from rigidfluid.errors import OutputError, SceneError, StepError
 from rigidfluid.post.progress import RunsProgress
 from rigidfluid.post.reports.style import PALETTE
 from rigidfluid.post.studies import load_study, run_study, scene_subject
@@ -548,3 +548,21 @@ def test_errors_of_its_scene_name_the_scene_file(write: Write) -> None:
     told = CliRunner().invoke(app, ["study", str(path), "--out", str(path.parent / "out")])
 
     assert f"{scene}:" in told.stderr
+
+
+def test_a_study_all_of_whose_runs_fail_says_why_and_ends_with_an_error(
+    write: Write, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(self: SceneSubject, settings: Settings, progress: Callable[[float], None]) -> Outcome:
+        raise StepError("body left_disk", "a gap of -1", "a positive one", "Soften the law.")
+
+    monkeypatch.setattr(SceneSubject, "run", fail)
+    path = write("time.step = [0.002, 0.001, 0.0005]", "time.step = [0.002]")
+    out = path.parent / "out"
+
+    told = CliRunner().invoke(app, ["study", str(path), "--out", str(out)])
+
+    assert told.exit_code == 1
+    assert "2 runs, 2 failed" in told.stdout
+    assert "the first failed run, time.step 0.002, body.0.density 1.0: body left_disk: " in told.stderr
+    assert f"{out / 'study.csv'} has the reasons of all." in told.stderr

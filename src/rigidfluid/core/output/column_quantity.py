@@ -1,0 +1,35 @@
+"""Quantities that columns of a run's tables and keys of its summary hold."""
+
+from __future__ import annotations
+
+from rigidfluid.core.output.records import LEDGER_COLUMNS, quantity_columns
+
+_IN_BODIES = {
+    "position": "length",
+    "orientation": "rad",
+    "velocity": "length/time",
+    "angular_velocity": "rad/time",
+    "force": "force",
+    "torque": "force·length",
+    "contact_force": "force",
+    "contact_torque": "force·length",
+}
+"""Quantities of a table of bodies, some of which other tables have too."""
+
+_ALONE = {"time": "time", "gap": "length", "size": "time", "pressure": "force/length^(d-1)"}
+
+
+def column_quantity(column: str, dimension: int) -> str:
+    """Quantity of a table's column, as "length/time"; empty of a number without one."""
+    if column in LEDGER_COLUMNS:
+        return "energy"
+    columns = quantity_columns(dimension)
+    return next((_IN_BODIES[name] for name in columns if column in columns[name]), _ALONE.get(column, ""))
+
+
+def summary_quantity(path: str) -> str:
+    """The same of a key path of summary.json."""
+    table, _, key = path.partition(".")
+    if table == "energy":
+        return "" if "relative" in key else "energy"
+    return {"time": "time", "smallest_gap": "length"}.get(table, "")
