@@ -20,6 +20,7 @@ import rigidfluid
 PACKAGING = ROOT / "packaging"
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 RECIPE = (PACKAGING / "conda" / "recipe.yaml").read_text(encoding="utf-8")
+HOOK = "packaging/long_description.py"
 CONDA_NAMES = {"matplotlib": "matplotlib-base", "netgen-mesher": "netgen"}
 """conda-forge's names where they are other than pip's; its `matplotlib` brings Qt."""
 needs_bash = pytest.mark.skipif(sys.platform == "win32", reason="a script of bash")
@@ -57,7 +58,7 @@ def test_images_get_the_same_files_and_they_are_there() -> None:
     docker = re.findall(r"^COPY (.*) /opt/source", (PACKAGING / "Dockerfile").read_text(encoding="utf-8"), re.MULTILINE)
     assert copied == {name for line in docker for name in line.split()}
     assert [name for name in copied if not (ROOT / name).exists()] == []
-    assert copied >= {"pyproject.toml", "src", "scenes", PROJECT["readme"], *PROJECT["license-files"]}
+    assert copied >= {"pyproject.toml", "src", "scenes", "README.md", HOOK, *PROJECT["license-files"]}
 
 
 STUBS = {

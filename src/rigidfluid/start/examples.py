@@ -75,7 +75,7 @@ def _comment(name: str) -> str:
 
 def _errors(comment: str) -> int:
     """The number of errors of a check that a comment tells of."""
-    told = re.search(r"`rigidfluid check` finds (\d+)", comment)
+    told = re.search(r"Errors of `rigidfluid check`: (\d+)", comment)
     return int(told[1]) if told else 0
 
 

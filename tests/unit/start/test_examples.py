@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import email
 import os
+import re
 import subprocess
 import sys
 import tomllib
@@ -123,3 +125,30 @@ def test_a_wheel_and_a_source_archive_have_the_scenes(tmp_path: Path) -> None:
     assert told == [str(installed / "rigidfluid" / "scenes"), " ".join(NAMES)]
     assert (tmp_path / "wavy_channel.msh").read_bytes() == (SCENES / "wavy_channel.msh").read_bytes()
     assert (installed / "rigidfluid" / "scenes" / "costs.csv").read_text().startswith("scene,least,most\n")
+    _check_metadata(installed)
+
+
+def _check_metadata(installed: Path) -> None:
+    """Addresses of the project, and a description whose links lead somewhere on the web, to files that there are."""
+    (path,) = installed.glob("*.dist-info/METADATA")
+    metadata = email.message_from_string(path.read_text(encoding="utf-8"))
+    addresses = dict(line.split(", ", 1) for line in metadata.get_all("Project-URL") or [])
+    assert set(addresses) == {"Homepage", "Documentation", "Source", "Changelog", "Issues"}
+    assert metadata["Description-Content-Type"] == "text/markdown"
+    links = re.findall(r"\]\(([^)]+)\)", metadata.get_payload())
+    files = [link.partition("/main/")[2] for link in links if link.startswith(f"{addresses['Source']}/")]
+    assert len(files) > 10
+    assert [file for file in files if not (ROOT / file).exists()] == []
+    assert [link for link in links if not link.startswith("https://")] == []
+
+
+@pytest.mark.parametrize(
+    "plugin", sorted((ROOT / "plugins").glob("*/pyproject.toml")), ids=lambda path: path.parent.name
+)
+def test_plug_ins_have_addresses_and_absolute_links(plugin: Path) -> None:
+    project = tomllib.loads(plugin.read_text(encoding="utf-8"))["project"]
+    assert set(project["urls"]) == {"Homepage", "Documentation", "Source", "Changelog", "Issues"}
+    links = re.findall(r"\]\(([^)]+)\)", plugin.with_name(project["readme"]).read_text(encoding="utf-8"))
+    assert [link for link in links if not link.startswith(("https://", "#"))] == []
+    files = [link.partition("/main/")[2].partition("#")[0] for link in links if "/rigidfluid/blob/main/" in link]
+    assert [file for file in files if not (ROOT / file).exists()] == []
