@@ -14,6 +14,7 @@ from rigidfluid.checks import check
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.post.reports.pictures import flow_picture, mesh_picture
+from rigidfluid.post.reports.units import Units
 
 SCENE, LONG = "falling_ellipsoid.toml", 1
 """The file, and which of the semi-axes is the long one."""
@@ -125,7 +126,9 @@ def page(work: Work) -> Page:
     )
     shown = slices(shipped.run, SHOWN)
     turns, speed = (colours(shipped.run, quantity) for quantity in ("vorticity", "speed"))
-    pictures = {"": curves(falls), "_vorticity": flow_picture(shown, turns), "_mesh": mesh_picture(shown, speed)}
+    units = Units.told_in(shipped.run.summary["scene"])
+    flows = {"_vorticity": flow_picture(shown, turns), "_mesh": mesh_picture(shown, speed)}
+    pictures = {"": curves(falls)} | {name: units.put_into_labels(figure) for name, figure in flows.items()}
     return Page("An ellipsoid falls in a flat box", text, pictures)
 
 

@@ -50,7 +50,7 @@ def scene_picture(folder: Path, shown: Shown) -> Figure:
         figure = _paths(results, plane) if shown.view == "paths" else _flow(results, plane, shown)
     figure.set_size_inches(WIDTH, HEIGHT)
     figure.set_layout_engine("compressed")
-    return figure
+    return results.units.put_into_labels(figure)
 
 
 def _paths(results: Results, plane: ViewPlane) -> Figure:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar, Self
@@ -117,8 +118,9 @@ class Box(Domain):
 
     def called(self, names: Collection[str]) -> Self:
         """The same box with faces called ``xmin`` … ``zmax`` where these are among the ``names``."""
-        other = type(self)(self.options, self.dimension)
-        other.periodic, other._called = self.periodic, names
+        other = copy(self)
+        other._called = names
+        vars(other).pop("pieces", None)  # they were kept under other names
         return other
 
     def between(self, axis: int, lower: float, upper: float) -> Box:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from copy import copy
 from functools import cached_property
 from typing import Any, ClassVar, Self
 
@@ -66,8 +67,9 @@ class Channel(Domain):
 
     def called(self, names: Collection[str]) -> Self:
         """The same channel with faces called ``xmin`` … ``zmax`` where these are among the ``names``."""
-        other = type(self)(self.options, self.dimension)
-        other.periodic, other._box = self.periodic, self._box.called(names)
+        other = copy(self)
+        other._box = self._box.called(names)
+        vars(other).pop("pieces", None)  # they were kept under other names
         return other
 
     def cad_shape(self, unit: float) -> Any:

@@ -79,7 +79,6 @@ def _model(scene: Scene, registry: Registry) -> Model:
         domain = ask(scene_domain, scene.domain, scene.boundary, registry, scene.dimension)
         if domain is not None:
             domain = domain.called(_names_used(scene))
-        if domain is not None:
             ask(check_boundary_tables, scene.boundary, domain, scene.time.end)
         mechanisms = ask(placed_mechanisms, scene.mechanism, registry, scene.dimension)
         bodies = tuple(

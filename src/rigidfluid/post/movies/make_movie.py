@@ -87,7 +87,8 @@ def movie(
             with writer.saving(figure, str(partial), dpi=100):
                 for number, frame in enumerate(frames, start=1):
                     image.set_data(_picture(results, shot, frame, look, scale))
-                    _label(axes, shot, frame.state, float(results.time[frame.state]))
+                    title = results.units.put_after_numbers(f"time {results.time[frame.state]:.4g} [time]")
+                    _label(axes, shot, frame.state, title)
                     writer.grab_frame()
                     if progress is not None:
                         progress(number, len(frames))
@@ -138,10 +139,10 @@ def _stage(results: Results, shot: Shot, look: Look, scale: Scale | None) -> tup
     return results.units.put_into_labels(figure), axes, image
 
 
-def _label(axes: Axes, shot: Shot, state: int, time: float) -> None:
-    """Set the title to the time, and the axes to the place of the picture."""
+def _label(axes: Axes, shot: Shot, state: int, title: str) -> None:
+    """Set the title, and the axes to the place of the picture."""
     axes.images[0].set_extent(shot.extent(state))
-    axes.set_title(f"time {time:.4g}")
+    axes.set_title(title)
 
 
 def _writer(out: Path | None, folder: Path, rate: int) -> tuple[Path, AbstractMovieWriter]:

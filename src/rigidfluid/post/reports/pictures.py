@@ -55,7 +55,7 @@ def gap_picture(moment: Moment, middle: FloatArray, scale: Scale) -> Figure:
 def _mesh_panels(shown: Sequence[Moment], views: Sequence[View], scale: Scale) -> Figure:
     figure = _panels(shown, views, scale, _draw_mesh)
     for axes, moment in zip(figure.axes, shown, strict=False):
-        axes.set_title(f"time {moment.time:.4g}, gap {moment.gap:.3g}")
+        axes.set_title(f"time {moment.time:.4g} [time], gap {moment.gap:.3g} [length]")
     return figure
 
 
@@ -74,7 +74,7 @@ def _panels(shown: Sequence[Moment], views: Sequence[View], scale: Scale, over: 
         for outline in moment.outlines:
             axes.fill(*outline.T, facecolor=BODY, edgecolor=BLACK, linewidth=0.8)
         _look_at(axes, view)
-        axes.set_title(f"time {moment.time:.4g}")
+        axes.set_title(f"time {moment.time:.4g} [time]")
     scale.draw_bar(figure, panels, 3 if shown[0].section.is_slice else 2)
     return figure
 

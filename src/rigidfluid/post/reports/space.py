@@ -53,7 +53,7 @@ def _panels(
     rows = -(-len(times) // columns)
     across = min(3.6, 5.5 * width / height + 0.8)
     figure = new_figure(columns * across + 1.5, rows * (across * height / width + 0.4))
-    panels = [figure.add_subplot(rows, columns, k + 1, title=f"time {time:.4g}") for k, time in enumerate(times)]
+    panels = [figure.add_subplot(rows, columns, k + 1, title=f"time {time:.4g} [time]") for k, time in enumerate(times)]
     for k, (axes, time) in enumerate(zip(panels, times, strict=True)):
         canvas, state = Canvas.blank(grid), results.state_at(time)
         if scale is not None:

@@ -491,8 +491,34 @@ def test_the_name_that_a_scene_uses_of_a_face_is_shown() -> None:
         shown = "zmin"  # it is used in one of the tables
         assert shown in model.surfaces
         assert shown in [condition.name for condition in model.conditions]
-        assert model.laws[0].names == (shown,)
+        assert (shown,) in [law.names for law in model.laws]
     assert "back" in model_of(scene_from_dict(in_3d(boundary=[{"on": "back", "type": "wall"}]))).surfaces
+
+
+@pytest.mark.parametrize(
+    "domain",
+    [
+        {
+            "type": "channel",
+            "lower": [0.0, 0.0],
+            "upper": [2.0, 6.0],
+            "obstacle": [{"name": "pin", "type": "sphere", "radius": 0.1, "position": [1.0, 1.0]}],
+        },
+        {"type": "stenosis", "length": 12.0, "width": 10.0, "radius": 1.0},
+    ],
+)
+def test_meshes_of_domains_with_a_box_in_them_know_both_names(domain: dict[str, Any]) -> None:
+    tables = changed({"domain": domain, "boundary": [{"on": "xmax", "type": "slip"}]})
+    model = model_of(scene_from_dict(tables))
+    assert model.domain.names[:3] == ("left", "xmax", "bottom")
+    assert {side.name for side in model.domain.cad_shape(1.0).edges} >= {"left", "xmax", "bottom", "top"}
+
+
+def test_a_part_of_a_box_has_the_same_names() -> None:
+    box = model_of(scene_from_dict(changed({"boundary": [{"on": "xmax", "type": "slip"}]}))).domain
+    part = box.between(1, 0.5, 5.0)
+    assert part is not None
+    assert part.names == box.names == ("left", "xmax", "bottom", "top")
 
 
 @pytest.mark.parametrize(

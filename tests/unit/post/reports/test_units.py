@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from html import unescape
 from pathlib import Path
 
 import pytest
+from paths import SCENES
 from scenes import dry_tables
 
 import rigidfluid
@@ -97,3 +99,20 @@ def test_a_run_goes_on_with_other_names_of_units(tmp_path: Path) -> None:
 def test_names_that_are_no_units_are_refused(wrong: dict[str, str]) -> None:
     with pytest.raises(SceneError, match=r"scene\.units"):
         named(wrong)
+
+
+@pytest.mark.parametrize(("names", "title"), [(None, "time 0.04, gap 0.002"), (CGS, "time 0.04 s, gap 0.002 cm")])
+def test_titles_have_units_after_their_numbers(names: dict[str, str] | None, title: str) -> None:
+    figure = new_figure(2.0, 2.0)
+    figure.add_subplot(title="time 0.04 [time], gap 0.002 [length]")
+    (axes,) = Units(names, 2).put_into_labels(figure).axes
+    assert axes.get_title() == title
+
+
+@pytest.mark.parametrize("path", sorted(SCENES.glob("*.toml")), ids=lambda path: path.stem)
+def test_scenes_name_the_units_that_their_comments_tell(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    comment = " ".join(line.removeprefix("# ") for line in text.partition("\n[")[0].splitlines())
+    told = re.search(r"(?:Units:|in) (\w+), (\w+), s\.", comment)
+    units = rigidfluid.load_scene(path).scene.units
+    assert (None if units is None else (units.length, units.mass, units.time)) == (told and (*told.groups(), "s"))
