@@ -142,7 +142,8 @@ class SchemaValues:
         options = [self._resolved(option) for option in schema.get("anyOf") or schema.get("oneOf") or [schema]]
         for option in options:
             if isinstance(key, int) and "items" in option:
-                return dict(option["items"])
+                items = option["items"]
+                return dict(items[min(key, len(items) - 1)] if isinstance(items, list) else items)
             if key in self.keys_of(option):
                 return self.keys_of(option)[str(key)]
         return {}
@@ -154,11 +155,15 @@ class SchemaValues:
 
     def _tables(self, schema: Schema, depth: int) -> st.SearchStrategy[Any]:
         """One of the parts that a table may name, with the table's own keys and the part's."""
-        parts = schema.get("allOf") or [{}]
+        parts = [one for one in schema.get("allOf", ()) if "then" in one] or [{}]
         return st.sampled_from(parts).flatmap(lambda part: self._table_with(schema, part, depth))
 
     def _table_with(self, schema: Schema, part: Schema, depth: int) -> st.SearchStrategy[Any]:
-        own, then = schema.get("properties", {}), part.get("then", {})
+        then = self._resolved(part.get("then", {}))
+        theirs = {key for one in schema.get("allOf", ()) for key in one.get("else", {}).get("properties", {})}
+        own = {key: value for key, value in schema.get("properties", {}).items() if key not in theirs}
+        if "additionalProperties" in then:  # it has all keys of its type
+            own = {}
         named = {key: st.just(given["const"]) for key, given in part.get("if", {}).get("properties", {}).items()}
         known = {**own, **then.get("properties", {})}
         required = {*schema.get("required", []), *then.get("required", [])}
@@ -170,8 +175,8 @@ class SchemaValues:
         return st.fixed_dictionaries(needed, optional=free)
 
     def _lists(self, schema: Schema, depth: int) -> st.SearchStrategy[Any]:
-        if "prefixItems" in schema:
-            return st.tuples(*(self.values(item, depth) for item in schema["prefixItems"])).map(list)
+        if isinstance(schema.get("items"), list):
+            return st.tuples(*(self.values(item, depth) for item in schema["items"])).map(list)
         if self._resolved(schema.get("items", {})).get("type") == "number" and "minItems" not in schema:
             return st.lists(self.values(schema["items"], depth), min_size=DIMENSION, max_size=DIMENSION)
         least, most = schema.get("minItems", 0), min(schema.get("maxItems", 3), 3)

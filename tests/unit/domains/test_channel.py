@@ -82,7 +82,7 @@ def test_a_stenosis_in_space_is_refused() -> None:
 
 
 def test_keys_of_an_obstacle_are_in_the_schema() -> None:
-    schema = jsonschema.Draft202012Validator(json_schema())
+    schema = jsonschema.Draft7Validator(json_schema())
     assert not list(schema.iter_errors(scene(channel(PIN))))
     assert list(schema.iter_errors(scene(channel({"type": "sphere", "radius": 0.1}))))
 

@@ -356,7 +356,7 @@ def test_a_contact_that_takes_a_wall_for_a_body_is_refused() -> None:
 
 def test_the_domain_is_listed_and_in_the_schema() -> None:
     assert Registry.load().get(DOMAIN, "dish").__name__ == "Dish"
-    schema = jsonschema.Draft202012Validator(json_schema())
+    schema = jsonschema.Draft7Validator(json_schema())
     assert not list(schema.iter_errors(in_a_dish(DISK)))
     assert list(schema.iter_errors(in_a_dish(DISK, domain={"type": "dish", "lower": [0.0, 0.0]})))
 

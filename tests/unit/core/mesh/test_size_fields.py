@@ -173,5 +173,7 @@ def test_a_resumed_run_makes_the_same_meshes(tmp_path: Path) -> None:
 
 def test_the_schema_knows_the_keys_of_each_field() -> None:
     conditions = json_schema()["$defs"]["SizeFieldTable"]["allOf"]
-    (vorticity,) = [one["then"] for one in conditions if one["if"]["properties"] == {"type": {"const": "vorticity"}}]
+    (vorticity,) = [
+        one["then"] for one in conditions if one["if"].get("properties") == {"type": {"const": "vorticity"}}
+    ]
     assert set(vorticity["properties"]) == {"size", "threshold"}

@@ -6,7 +6,7 @@ import copy
 import tomllib
 import weakref
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -82,9 +82,32 @@ def test_our_scenes_load_build_and_fit_the_schema(path: Path) -> None:
 
 
 def test_schema_is_valid_and_refuses_what_the_loader_refuses() -> None:
-    jsonschema.Draft202012Validator.check_schema(json_schema())
+    jsonschema.Draft7Validator.check_schema(json_schema())
+    for keys in nested_keys(json_schema()):  # of later drafts, which editors do not know
+        assert keys not in ("unevaluatedProperties", "prefixItems", "dependentRequired")
     for changes in ({"body.0.raduis": 1.0}, {"body.0.density": -1.0}, {"contact.epsilon": "much"}, {"fluid.x": 1}):
-        assert not jsonschema.Draft202012Validator(json_schema()).is_valid(changed(changes))
+        assert not jsonschema.Draft7Validator(json_schema()).is_valid(changed(changes))
+
+
+def nested_keys(schema: Any) -> Iterator[str]:
+    """All keys in a schema."""
+    for value in schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ():
+        yield from nested_keys(value)
+    yield from schema if isinstance(schema, dict) else ()
+
+
+def test_misspelt_keys_are_refused_by_the_schema_of_the_table_itself() -> None:
+    """Editors stop at a table's `additionalProperties`, whatever its conditions say."""
+    definitions = json_schema()["$defs"]
+    for name in ("FluidTable", "BodyTable", "ContactTable", "DomainTable", "MechanismTable", "JointTable"):
+        assert definitions[name]["additionalProperties"] is False
+    assert {"radius", "semi_axes", "density"} <= definitions["BodyTable"]["properties"].keys()
+    boundary = json_schema()["properties"]["boundary"]["items"]
+    assert boundary["properties"]["type"]["enum"] == ["periodic", "pressure", "slip", "symmetry", "velocity", "wall"]
+    valid = jsonschema.Draft7Validator(json_schema()).is_valid
+    assert valid(changed({"boundary": [{"on": "all", "type": "wall"}]}))
+    for wrong in ({"type": "wal"}, {"type": "wall", "pressure": 1.0}, {"type": "wall", "velocty": [0.0, 0.0]}, {}):
+        assert not valid(changed({"boundary": [{"on": "all", **wrong}]}))
 
 
 BAD = {

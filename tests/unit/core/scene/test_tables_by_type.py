@@ -91,7 +91,7 @@ def test_a_type_that_is_misspelt_is_recognised(word: str, remedy: str) -> None:
 
 
 def test_the_schema_has_the_keys_of_each_type() -> None:
-    valid = jsonschema.Draft202012Validator(json_schema()).is_valid
+    valid = jsonschema.Draft7Validator(json_schema()).is_valid
     assert valid(tables(INLET, OUTLET, {"on": "top", "type": "symmetry"}))
     assert not valid(tables(INLET | {"pressure": 0.0}))
     assert not valid(tables(LEFT | {"type": "walls"}))
