@@ -23,6 +23,11 @@ _HOMES = {
 }
 
 
+def __dir__() -> list[str]:
+    """Names of the module, with those that are imported on first use."""
+    return sorted({*globals(), *__all__})
+
+
 def __getattr__(name: str) -> object:
     """Import the numerical stack when it is first asked for, so that `import rigidfluid` stays light."""
     if name not in _HOMES:

@@ -380,6 +380,11 @@ __all__ = [
 ]
 
 
+def __dir__() -> list[str]:
+    """Names of the module, with those that are imported on first use."""
+    return sorted({*globals(), *__all__})
+
+
 def __getattr__(name: str) -> object:
     """Import runs and their results on first use: plug-ins are imported at every start and need no loop."""
     if name not in _LOOP:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import importlib
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -49,3 +50,9 @@ def test_no_more_is_allowed_than_is_needed() -> None:
 def test_the_plug_ins_beside_import_what_is_public(plugin: str) -> None:
     found = list(imported(ROOT / "plugins" / f"rigidfluid-{plugin}" / "src"))
     assert {names[0] for names in found} <= PUBLIC
+
+
+@pytest.mark.parametrize("module", ["rigidfluid", "rigidfluid.api"])
+def test_names_that_are_imported_on_first_use_are_listed(module: str) -> None:
+    found = importlib.import_module(module)
+    assert set(found.__all__) <= set(dir(found))

@@ -10,6 +10,7 @@ from gymnasium.utils.env_checker import check_env
 from small_tasks import MASS, STEP, blown, channel, drag, dry_scene, joined, pushed
 
 from rigidfluid.api import ArgumentError, SceneError, scene_from_dict
+from rigidfluid.core.case.scene_model import model_of
 from rigidfluid_gymnasium import (
     AppliedWrench,
     BodyValue,
@@ -21,6 +22,7 @@ from rigidfluid_gymnasium import (
     ProbeValue,
     Task,
 )
+from rigidfluid_gymnasium.course import Course
 
 
 @pytest.mark.parametrize("task", [pushed(), joined(), blown()], ids=["pushed", "joined", "blown"])
@@ -167,3 +169,28 @@ def test_what_is_seen_beyond_its_bounds_is_clipped_and_told() -> None:
     observed, *_, info = env.step(np.array([1.0, 0.0]))
     assert observed[0] == 5.0 < env.run.bodies["disk"].position[0]
     assert info["clipped"] == ["BodyValue(disk, position)"]
+
+
+@pytest.mark.parametrize(
+    ("make", "told"),
+    [
+        (lambda bounds: BodyValue("disk", "velocty", **bounds), "BodyValue.quantity: found 'velocty'.*'velocity'"),
+        (
+            lambda bounds: JointValue("hinge", "angle", **bounds),
+            "JointValue.quantity: found 'angle'.*one of value, rate",
+        ),
+        (lambda bounds: ProbeValue([0.5, 0.5], "speed", **bounds), "ProbeValue.quantity: found 'speed'"),
+    ],
+)
+def test_quantities_that_there_are_not_are_refused(make: Any, told: str) -> None:
+    with pytest.raises(ArgumentError, match=told):
+        make({"low": -1.0, "high": 1.0})
+
+
+def test_factors_know_both_names_of_faces() -> None:
+    factors = [BoundaryFactor(name, low=0.5, high=1.0) for name in ("left", "xmin")]
+    model = model_of(channel())
+    scaled = [factor.followed_by(model, Course(np.array([0.5]))).boundary for factor in factors]
+    assert [set(boundary) for boundary in scaled] == [set(model.boundary) | {"left"}] * 2
+    with pytest.raises(SceneError, match="left or xmin, right or xmax"):
+        BoundaryFactor("roof", low=0.5, high=1.0).followed_by(model, Course(np.array([0.5])))

@@ -36,9 +36,6 @@ class BoundaryFactor(Action):
     def followed_by(self, model: Model, course: Course) -> Model:
         """The model with the values scaled; raises SceneError where none are prescribed, or a factor at the bounds lets
         more fluid in than out."""
-        if self._surface(model) is None:
-            allowed = f"a surface of the domain: {model.domain.names_in_words}"
-            raise SceneError("boundary", repr(self.name), allowed, "Name another.")
         for limit in self.limits(model.dimension):
             self._scaled(model, Course(limit))
         return self._scaled(model, course)
@@ -48,10 +45,13 @@ class BoundaryFactor(Action):
         maker = partial(_scaled_condition, make=model.boundary.get(surface, NoSlip), course=course)
         return replace(model, boundary={**model.boundary, surface: maker})
 
-    def _surface(self, model: Model) -> str | None:
-        """Name of the surface in the model; None where there is none."""
-        pieces = model.domain.pieces
-        return next((piece.name for piece in pieces if self.name in (piece.name, piece.other_name)), None)
+    def _surface(self, model: Model) -> str:
+        """Name of the surface in the model; raises SceneError where there is none."""
+        for piece in model.domain.pieces:
+            if self.name in (piece.name, piece.other_name):
+                return piece.name
+        allowed = f"a surface of the domain: {model.domain.names_in_words}"
+        raise SceneError("boundary", repr(self.name), allowed, "Name another.")
 
 
 @dataclass(frozen=True)

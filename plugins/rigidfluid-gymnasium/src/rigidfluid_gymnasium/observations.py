@@ -5,11 +5,11 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, TypeVar
+from typing import Literal, TypeVar, get_args
 
 import numpy as np
 
-from rigidfluid.api import FloatArray, SceneError, Simulation
+from rigidfluid.api import ArgumentError, FloatArray, SceneError, Simulation, suggestion
 from rigidfluid_gymnasium.bounds import Bounded, component_count
 
 T = TypeVar("T")
@@ -24,6 +24,8 @@ BodyQuantity = Literal[
     "contact_torque",
     "gap",
 ]
+JointQuantity = Literal["value", "rate"]
+ProbeQuantity = Literal["velocity", "pressure"]
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,9 @@ class BodyValue(Observation):
     body: str
     quantity: BodyQuantity
 
+    def __post_init__(self) -> None:
+        _check_quantity(self.quantity, get_args(BodyQuantity), "BodyValue")
+
     def length(self, dimension: int) -> int:
         turns = component_count(dimension) - dimension
         lengths = {"orientation": 1 if dimension == 2 else 4, "gap": 1}
@@ -58,7 +63,10 @@ class JointValue(Observation):
     """Coordinate of a ``joint``, the angle of a hinge or the displacement of a slider, or its ``rate``."""
 
     joint: str
-    quantity: Literal["value", "rate"] = "value"
+    quantity: JointQuantity = "value"
+
+    def __post_init__(self) -> None:
+        _check_quantity(self.quantity, get_args(JointQuantity), "JointValue")
 
     def length(self, dimension: int) -> int:
         return 1
@@ -74,7 +82,10 @@ class ProbeValue(Observation):
     """Velocity or pressure of the fluid at a ``point``; within a body what is near."""
 
     point: Sequence[float]
-    quantity: Literal["velocity", "pressure"]
+    quantity: ProbeQuantity
+
+    def __post_init__(self) -> None:
+        _check_quantity(self.quantity, get_args(ProbeQuantity), "ProbeValue")
 
     def length(self, dimension: int) -> int:
         return dimension if self.quantity == "velocity" else 1
@@ -85,6 +96,13 @@ class ProbeValue(Observation):
         points = np.array([self.point], dtype=np.float64)
         velocity, pressure = run.system.backend.probe(run.state.fluid, run.state.mesh, points)
         return velocity[0] if self.quantity == "velocity" else pressure
+
+
+def _check_quantity(quantity: str, allowed: Sequence[str], kind: str) -> None:
+    """Refuse, with ArgumentError, a quantity that such an observation does not have."""
+    if quantity not in allowed:
+        remedy = suggestion(str(quantity), allowed) or "Name one of them."
+        raise ArgumentError(f"{kind}.quantity", repr(quantity), f"one of {', '.join(allowed)}", remedy)
 
 
 def _named(parts: dict[str, T], name: str, kind: str) -> T:

@@ -45,7 +45,7 @@ def json_schema() -> dict[str, Any]:
         for kind in kinds:
             definitions[name]["properties"][kind.key]["enum"] = ["auto"] * (kind is DETECTOR) + registry.names(kind)
     tables = schema["properties"]["boundary"]
-    tables["items"] = _by_type(tables["items"]["discriminator"]["mapping"], definitions)
+    tables["items"] = _typed_tables(tables["items"]["discriminator"]["mapping"], definitions)
     return {"$schema": "http://json-schema.org/draft-07/schema#"} | {k: _in_draft_7(v) for k, v in schema.items()}
 
 
@@ -72,7 +72,7 @@ def _names_it(entry: Entry) -> dict[str, Any]:
     return named if entry.name in _UNNAMED[entry.kind] else {**named, "required": [key]}
 
 
-def _by_type(mapping: Mapping[str, str], definitions: Mapping[str, Any]) -> dict[str, Any]:
+def _typed_tables(mapping: Mapping[str, str], definitions: Mapping[str, Any]) -> dict[str, Any]:
     """Schema of tables of several types: the keys of all, with the table of each type by its reference."""
     keys: dict[str, list[Any]] = {}
     for table in dict.fromkeys(mapping.values()):
@@ -94,7 +94,7 @@ def _by_type(mapping: Mapping[str, str], definitions: Mapping[str, Any]) -> dict
 
 
 def _any_of(schemas: Sequence[Any]) -> Any:
-    """What one of several schemas allows."""
+    """Schema of whatever one of several allows."""
     different = [schema for number, schema in enumerate(schemas) if schema not in schemas[:number]]
     return different[0] if len(different) == 1 else {"anyOf": different}
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.types import Fields
 from rigidfluid.core.output.optional_package import optional_package
 from rigidfluid.core.output.vtu import QUADRATIC, in_space, nodal_arrays
@@ -38,6 +39,11 @@ class FluidFields(Described, Fields):
     def from_fields(cls, found: Fields, time: float) -> FluidFields:
         """The same arrays with their time."""
         return cls(**{one.name: getattr(found, one.name) for one in fields(found)}, time=time)
+
+    @property
+    def vorticity(self) -> FloatArray:
+        """Vorticity ∇ × u at the nodes, the mean over the cells around each: (N,) in 2D, (N, 3) in 3D [1/time]."""
+        return nodal_arrays(self)["vorticity"]
 
     def grid(self) -> Any:
         """Grid of PyVista with ``velocity`` of three components, ``pressure`` and ``vorticity`` at its points.

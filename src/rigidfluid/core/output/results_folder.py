@@ -12,7 +12,7 @@ import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TextIO
+from typing import IO, Any, TextIO
 
 from rigidfluid.core.output.disk import writing
 from rigidfluid.errors import OutputError
@@ -69,6 +69,14 @@ def join_folder(out: Path, product: Product, added: Product) -> None:
         if not _is_marked(out, product):
             _refuse_foreign(out, added)
             _locked(out, product).close()
+
+
+def is_being_written(out: Path, product: Product) -> bool:
+    """Whether a process is writing the product to a folder now; False also where there are no locks."""
+    if not (out / product.mark).is_file():
+        return False
+    with (out / product.mark).open("rb") as file:
+        return not _lock(file)
 
 
 def refuse_links(out: Path, product: Product) -> None:
@@ -133,7 +141,7 @@ def _signature(product: Product) -> str:
     return f"writes this {product.kind} of rigidfluid\n"
 
 
-def _lock(file: TextIO) -> bool:
+def _lock(file: IO[Any]) -> bool:
     """Whether nobody else holds it; true also where there are no such locks: on Windows, and on some network disks."""
     if sys.platform == "win32":
         return True

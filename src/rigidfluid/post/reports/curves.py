@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -11,6 +11,9 @@ from matplotlib.figure import Figure, SubFigure
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.post.reports.style import BLUE, PALETTE
+
+_PER_LETTER, _LETTERS_OF_HANDLE = 0.068, 8
+"""Mean width of a letter in a legend [inch], and how many a line's sample and the room around it are wide."""
 
 MOST_LINES = len(PALETTE)
 """More bodies than this are shown by their spread."""
@@ -33,7 +36,13 @@ def add_legend(figure: Figure | SubFigure) -> None:
         handles, labels = axes.get_legend_handles_labels()
         named.update(zip(labels, handles, strict=True))
     if len(named) > 1:
-        figure.legend(list(named.values()), list(named), loc="outside upper center", ncols=5)
+        figure.legend(list(named.values()), list(named), loc="outside upper center", ncols=_columns(figure, named))
+
+
+def _columns(figure: Figure | SubFigure, names: Iterable[str]) -> int:
+    """Columns of a legend, at most five, of which the figure has room for so many as wide as the longest name."""
+    widest = _PER_LETTER * (max(map(len, names)) + _LETTERS_OF_HANDLE)
+    return int(np.clip(figure.bbox.width / figure.figure.dpi // widest, 1, 5))
 
 
 def widen(axes: Axes, least: float) -> None:

@@ -15,6 +15,7 @@ from rigidfluid.post.reports.results import Results
 from rigidfluid.post.reports.style import (
     BLACK,
     BLUE,
+    BODY,
     GREEN,
     ORANGE,
     PURPLE,
@@ -122,6 +123,7 @@ def energy_plot(results: Results) -> Figure:
         "taken by stabilisation": (energy["grad_div_loss"], SKY),
         "kinetic": (energy["kinetic"], BLUE),
         "in contacts": (energy["contact"], GREEN),
+        "taken by dampers": (energy["contact_loss"], BODY),
         "lost in transfer": (energy["transfer_loss"], PURPLE),
     }
     axes.stackplot(energy["time"], *(values for values, _ in shares.values()), labels=list(shares),
@@ -134,7 +136,8 @@ def energy_plot(results: Results) -> Figure:
     below.set_ylabel("not accounted for\n[% of what was at hand]")
     created, lost = (per_cent(account.share(flow.largest)) for flow in (account.creation, account.loss))
     told = f"created {created}, lost {lost} at most in a stretch"
-    below.set_title(f"{told}, {per_cent(account.share(energy['residual'][-1]))} unaccounted for at the end", fontsize=9)
+    residual, until = per_cent(account.share(energy["residual"][-1])), "so far" if results.goes_on else "at the end"
+    below.set_title(f"{told}, {residual} unaccounted for {until}", fontsize=9)
     add_legend(figure)
     return figure
 

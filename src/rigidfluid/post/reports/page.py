@@ -22,6 +22,7 @@ _ENERGIES = {
     "body_force": "supplied by the force on the fluid",
     "dissipation": "dissipated by viscosity",
     "grad_div_loss": "taken by grad-div stabilisation, in cells too coarse for the flow",
+    "contact_loss": "taken by dampers of contacts and joints",
     "transfer_loss": "lost in transfers between meshes",
     "kinetic": "kinetic, at the end",
     "contact": "stored in contacts, at the end",
@@ -81,11 +82,11 @@ def _status(results: Results) -> str:
     summary, end = results.summary, results.model.time.end
     at = f"{results.time[-1]:.5g} of {end:.5g} [time]"
     status = f"Status: {summary['status']}" if summary else "Status: goes on, or was stopped; resumed by --resume"
+    if results.goes_on:
+        status = "Status: goes on"
     written = datetime.fromtimestamp(results.written, UTC)
-    made = (
-        f"Results of {written:%Y-%m-%d %H:%M} UTC, by rigidfluid run with the scene below; page by rigidfluid report."
-    )
-    return f"{status}, at {at}. {made}"
+    when = f"{'until' if results.goes_on else 'of'} {written:%Y-%m-%d %H:%M} UTC"
+    return f"{status}, at {at}. Results {when}, by rigidfluid run with the scene below; page by rigidfluid report."
 
 
 def _balance_and_cost(summary: Mapping[str, Any]) -> Iterator[str]:

@@ -15,7 +15,9 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.system import System
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import Row, columns, joint_coordinates, moving, quantity_columns
+from rigidfluid.core.output.results_folder import is_being_written
 from rigidfluid.core.output.run_document import read_document
+from rigidfluid.core.output.run_files import RUN
 from rigidfluid.core.output.summary_file import unreadable
 from rigidfluid.core.output.tables import KINDS, read_header, read_rows, table_path
 from rigidfluid.core.output.vtu import read_pvd
@@ -43,7 +45,7 @@ class Results:
     (s,) [time]; ``bodies`` by column (s, n); ``joints`` by column (s, j), no columns without any; ``energy`` by column
     (s,); ``series`` the times and files of the fields, empty without a fluid. ``wholes`` of mechanisms by column
     (s, mechanisms). ``contact_counts`` (s,): how many contacts there are within the range of the laws.
-    ``written``: when its latest row was [s since 1970].
+    ``written``: when its latest row was [s since 1970]. ``goes_on``: whether a process is writing there.
     """
 
     summary: dict[str, Any]
@@ -57,6 +59,7 @@ class Results:
     wholes: dict[str, FloatArray] = field(default_factory=dict)
     contact_counts: FloatArray = field(default_factory=lambda: np.zeros(0))
     written: float = 0.0
+    goes_on: bool = False
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -136,6 +139,7 @@ def read_results(folder: Path, *, motion_only: bool = False, model: Model | None
         energy={name: values[:, 0] for name, values in tables.get("energy", {}).items()},
         series=series,
         wholes={name: values[:, count:] for name, values in by_state.items()},
+        goes_on=is_being_written(folder, RUN),
         written=table_path(folder, "bodies").stat().st_mtime,
         contact_counts=np.zeros(0) if motion_only else _contact_counts(folder, model.dimension, steps),
     )

@@ -40,17 +40,15 @@ class Units:
 
     def put_after_numbers(self, text: str) -> str:
         """A title with the units of its numbers: "time 0.04 s" for "time 0.04 [time]", or without names "time 0.04"."""
-        return re.sub(r"(?<=\d) (\[[\w·/]+\])", self._after_number, text)
-
-    def _after_number(self, found: re.Match[str]) -> str:
-        return "" if self.names is None else f" {self.put_into(found[1]).strip('[]')}"
+        named, unit = (self.put_into(text), r" \1") if self.names else (text, "")
+        return re.sub(r"(?<=\d) \[([^\]]+)\]", unit, named)
 
     def put_into_labels(self, figure: Figure) -> Figure:
         """The same figure, with names in the labels of all its axes and in what stands in them."""
         for axes in figure.axes:
             for text in (axes.xaxis.label, axes.yaxis.label, *axes.texts):
                 text.set_text(self.put_into(text.get_text()))
-            axes.title.set_text(self.put_into(self.put_after_numbers(axes.title.get_text())))
+            axes.title.set_text(self.put_after_numbers(axes.title.get_text()))
         return figure
 
     def _named(self, found: re.Match[str]) -> str:

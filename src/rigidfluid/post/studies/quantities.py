@@ -6,6 +6,7 @@ from pydantic import BaseModel
 
 from rigidfluid.core.case.key_quantity import key_quantity
 from rigidfluid.core.output.column_quantity import column_quantity, summary_quantity
+from rigidfluid.core.scene.quantity import plain_quantity
 from rigidfluid.post.reports.units import Units
 from rigidfluid.post.studies.model import FigureTable
 
@@ -26,8 +27,6 @@ def _named(quantity: str, units: Units) -> str:
     """A quantity by names of units, in so many dimensions; empty where a part of it has no name."""
     if units.names is None or not quantity:
         return ""
-    volume, surface, rest = {2: ("area", "length", ""), 3: ("area·length", "area", "/length")}[units.dimension]
-    plain = quantity.replace("time²", "time·time").replace("length^(d-1)", surface)
-    plain = plain.replace("·length^(2-d)", rest).replace("length^d", volume).replace("volume", volume)
+    plain = plain_quantity(quantity, units.dimension)
     named = units.put_into(f"[{plain}]")
     return "" if named in (f"[{plain}]", "[1]") else f" {named}"

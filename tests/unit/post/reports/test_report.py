@@ -11,21 +11,25 @@ from html import unescape
 from importlib.util import find_spec
 from pathlib import Path
 
+import matplotlib
 import numpy as np
 import pytest
 from falling import SCENES, falling_disk
 from scenes import dry_tables
 
 import rigidfluid
-from rigidfluid import registry
+from rigidfluid import registry, run, scene_from_dict
 from rigidfluid.core.model.types import Fields
 from rigidfluid.core.output.energy_account import per_cent
 from rigidfluid.core.output.vtu import read_pvd, read_vtu, write_vtu
+from rigidfluid.core.run.run import Progress
 from rigidfluid.core.run.summary import FLOWS
 from rigidfluid.errors import OutputError, PluginError
 from rigidfluid.post.movies import Look, movie
 from rigidfluid.post.reports import report
+from rigidfluid.post.reports.lines import energy_plot
 from rigidfluid.post.reports.results import read_results
+from rigidfluid.post.reports.style import STYLE
 
 PNG = b"\x89PNG\r\n"
 FIELD_PICTURES = {
@@ -270,3 +274,36 @@ def test_series_lists_the_output_times(fall: Path) -> None:
     series = read_pvd(fall / "fields.pvd")
     assert [time for time, _ in series] == pytest.approx([0.0, 0.01, 0.02, 0.03])
     assert all(path.exists() for _, path in series)
+
+
+def test_the_report_of_a_run_in_progress_says_so(tmp_path: Path) -> None:
+    pages: list[str] = []
+
+    def look(now: Progress) -> None:
+        if now.time > 0.01 and not pages:
+            pages.append(unescape(report(tmp_path)[-1].read_text(encoding="utf-8")))
+
+    ball = {"type": "sphere", "radius": 0.1, "density": 2.0, "position": [0.4, 0.5]}
+    run(scene_from_dict(dry_tables(ball, end=0.03, output={"every": 0.01})), tmp_path, progress=look)
+    assert "Status: goes on, at 0.0" in pages[0]
+    assert "Results until " in pages[0]
+    assert "Status: complete" in unescape(report(tmp_path)[-1].read_text(encoding="utf-8"))
+
+
+def test_energies_show_what_dampers_take_and_the_legend_is_whole(tmp_path: Path) -> None:
+    spring = {"stiffness": [0.0, 50.0], "damping": [0.0, 5.0]}
+    ball = {"type": "sphere", "radius": 0.1, "density": 2.0, "position": [0.4, 0.5], "spring": spring}
+    scene = dry_tables(ball | {"velocity": [0.0, 1.0]}, end=0.03, output={"every": 0.01})
+    run(scene_from_dict(scene), tmp_path)
+    results = read_results(tmp_path)
+    assert results.energy["contact_loss"][-1] > 0.0
+    with matplotlib.rc_context(STYLE):
+        figure = energy_plot(results)
+        figure.canvas.draw()
+    (legend,) = figure.legends
+    shown, whole = legend.get_window_extent(), figure.bbox
+    assert "taken by dampers" in [text.get_text() for text in legend.get_texts()]
+    assert shown.x0 >= whole.x0
+    assert shown.x1 <= whole.x1
+    page = unescape(report(tmp_path)[-1].read_text(encoding="utf-8"))
+    assert "taken by dampers of contacts and joints" in page

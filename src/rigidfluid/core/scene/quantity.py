@@ -1,0 +1,10 @@
+"""Quantities of keys, in so many dimensions."""
+
+from __future__ import annotations
+
+
+def plain_quantity(quantity: str, dimension: int) -> str:
+    """A quantity without powers of the dimension d: "mass/area" for "mass/length^d" in 2D."""
+    volume, surface, rest = {2: ("area", "length", ""), 3: ("area·length", "area", "/length")}[dimension]
+    plain = quantity.replace("time²", "time·time").replace("length^(d-1)", surface)
+    return plain.replace("·length^(2-d)", rest).replace("length^d", volume).replace("volume", volume)
