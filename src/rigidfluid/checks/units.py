@@ -39,12 +39,12 @@ def unit_findings(model: Model, system: System) -> Iterator[Finding]:
     densities = [fluid.density, *(body.density for body in model.bodies)]
     vector = np.zeros(model.dimension) if model.gravity is None else np.asarray(model.gravity, dtype=float)
     gravity = float(np.linalg.norm(vector))
-    for unit, (least, most), other, earth, meant in _MIXED:
-        named = model.units is not None and f"{model.units.length}/{model.units.time}²" == other
-        if not named and abs(gravity / earth - 1.0) < 0.01 and all(least <= density <= most for density in densities):
+    in_mm = model.units is not None and (model.units.length, model.units.mass) == ("mm", "mg")  # 1 mg/mm³ is 1 g/cm³
+    for unit, (least, most), other, earth, meant in () if in_mm else _MIXED:
+        if abs(gravity / earth - 1.0) < 0.01 and all(least <= density <= most for density in densities):
             text += f"; gravity is the Earth's in {other}, and densities are as in {unit}"
             asked = ", ".join(f"{part * meant / gravity + 0.0:.6g}" for part in vector)
-            remedy = f"Set gravity = [{asked}] in [fluid]; if it is intended, name the units in `[scene] units`."
+            remedy = f"Set gravity = [{asked}] in [fluid], or ignore this if it is intended."
             yield Finding("warning", QUESTION, (name,), text, remedy, found)
             return
     yield Finding("note", QUESTION, (name,), text, found=found)

@@ -22,7 +22,7 @@ def test_metres_in_a_scene_of_centimetres_are_found_with_speed_and_reynolds_numb
     finding = told(1.0, 9.81)
     assert finding.grade == "warning"
     assert "gravity is the Earth's in m/s², and densities are as in g/cm³" in finding.text
-    assert finding.remedy.startswith("Set gravity = [0, -981] in [fluid];")
+    assert finding.remedy.startswith("Set gravity = [0, -981] in [fluid],")
     speed = finding.found["speed"]
     assert isinstance(speed, float)
     assert finding.found["reynolds"] == pytest.approx(0.25 * speed / 0.1)
@@ -52,7 +52,7 @@ def test_gravity_in_space_keeps_its_direction() -> None:
     fluid = {"backend": "scikit-fem", "density": 1.0, "viscosity": 0.1, "gravity": [0.0, 0.0, -9.81]}
     scene = load_scene(SCENES / "falling_sphere.toml", [f"fluid.gravity={fluid['gravity']}"])
     (finding,) = [one for one in check(scene).findings if one.question == "units"]
-    assert finding.remedy.startswith("Set gravity = [0, 0, -981] in [fluid];")
+    assert finding.remedy.startswith("Set gravity = [0, 0, -981] in [fluid],")
 
 
 def test_gravity_in_the_units_that_the_scene_names_is_not_doubted() -> None:

@@ -187,7 +187,7 @@ def test_a_scene_without_a_mesh_is_refused_without_a_traceback(tmp_path: Path) -
     file.write_text(text.replace("viscosity = 0.1", 'viscosity = 0.1\nbackend = "dry"'), encoding="utf-8")
     result = CliRunner().invoke(app, ["insert", str(file), "--out", str(tmp_path / "mesh")])
     assert result.exit_code == 2
-    assert result.stderr.startswith("Error: mesh: found no such table")
+    assert result.stderr.startswith(f"Error: {file}: mesh: found no such table")
     assert not (tmp_path / "mesh").exists()
 
 
