@@ -88,14 +88,19 @@ def check_detector(system: System, pose: Pose, mesh: Mesh | None, count: int) ->
 def _searched_pairs(
     system: System, pose: Pose, mesh: Mesh | None, pairs: Sequence[tuple[int, int]], error: float
 ) -> Iterator[tuple[_Side, _Side, float]]:
-    """Both sides of pairs, and the gap at most at which a detector of a relative ``error`` has to find them; on a mesh
-    without those that its reach leaves out."""
+    """Both sides of pairs, and the gap at most at which a detector of a relative ``error`` has to find them; without
+    those that are nearest where two walls meet, as one contact is enough there, and on a mesh without those that its
+    reach leaves out."""
     for pair in pairs:
         off = error * system.bodies[pair[0]].bounding_radius
         a, b = (_side(system, pose, mesh, number, off) for number in pair)
-        apart = _searched(a, b)
+        apart, foot = _searched(a, b)
         reach = apart + a.off + b.off
-        if (apart > 0.0 and reach <= system.reach) or not system.detection.on_mesh:
+        if system.detection.on_mesh:
+            has_to = apart > 0.0 and reach <= system.reach
+        else:
+            has_to = not _where_walls_meet(system, b, foot)
+        if has_to:
             yield a, b, reach
 
 
@@ -167,15 +172,23 @@ def _side(system: System, pose: Pose, mesh: Mesh | None, number: int, error: flo
     return side._replace(off=error + float(depth))
 
 
-def _searched(a: _Side, b: _Side) -> float:
+def _searched(a: _Side, b: _Side) -> tuple[float, FloatArray]:
     """Distance of two points of both surfaces, that of the surfaces where they are convex; 0 or below where they
-    overlap [length]."""
+    overlap [length]; and the point (1, d) of the second."""
     samples = a.samples()
     distance = b.distance(samples)
-    if distance.min() <= 0.0:
-        return 0.0
     point = samples[[int(np.argmin(distance))]]
+    if distance.min() <= 0.0:
+        return 0.0, point
     for _ in range(_PROJECTIONS):
         foot = b.closest(point)
         point = a.closest(foot)
-    return float(np.linalg.norm(point - foot))
+    return float(np.linalg.norm(point - foot)), foot
+
+
+def _where_walls_meet(system: System, side: _Side, foot: FloatArray) -> bool:
+    """Whether the side is a wall, and its point ``foot`` (1, d) is on another one too."""
+    if side.number < len(system.bodies):
+        return False
+    others = (wall.shape for wall in system.walls if wall.surface != side.number)
+    return any(abs(float(other.signed_distance(foot)[0])) <= side.off for other in others)

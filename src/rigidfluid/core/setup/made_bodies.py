@@ -30,9 +30,19 @@ def check_made_bodies(
             None if body is None else ask(_valid, body, domain.dimension, f"body.{n}") for n, body in enumerate(bodies)
         ]
         numbers = [n for n, body in enumerate(valid) if body is not None]
-        made = PlacedBodies(domain, tuple(filter(None, valid)), tuple(mechanisms), registry)
+        made = PlacedBodies(domain, tuple(filter(None, valid)), tuple(_distinct(mechanisms)), registry)
         if made.all_bodies:
             ask(_check_made, made, numbers)
+
+
+def _distinct(mechanisms: Sequence[PlacedMechanism]) -> Iterator[PlacedMechanism]:
+    """Mechanisms with a name that none before has, and components with names of their own: bodies are found by them."""
+    names: set[str] = set()
+    for one in mechanisms:
+        components = [each.name for each in one.mechanism.components]
+        if one.name not in names and len(set(components)) == len(components):
+            yield one
+        names.add(one.name)
 
 
 def _check_made(made: PlacedBodies, numbers: Sequence[int]) -> None:

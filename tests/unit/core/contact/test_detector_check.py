@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from dry_scenes import ball, dry_scene
+from falling import SCENES
 
 import rigidfluid
 from rigidfluid.core.case.scene_model import model_of
@@ -208,3 +209,9 @@ def test_honest_detectors_pass() -> None:
         system = assembled(scene)
         for count in range(20):
             check_detector(system, system.pose, None, count)
+
+
+def test_a_place_at_which_two_walls_meet_may_be_a_contact_of_one_of_them() -> None:
+    system = assembled(rigidfluid.load_scene(SCENES / "insertion_2d.toml"))
+    for count in range(20):
+        check_detector(system, system.pose, None, count)
