@@ -89,8 +89,8 @@ def _searched_pairs(
     system: System, pose: Pose, mesh: Mesh | None, pairs: Sequence[tuple[int, int]], error: float
 ) -> Iterator[tuple[_Side, _Side, float]]:
     """Both sides of pairs, and the gap at most at which a detector of a relative ``error`` has to find them; without
-    those that are nearest where two walls meet, as one contact is enough there, and on a mesh without those that its
-    reach leaves out."""
+    those that are nearest where two pieces of the boundary meet, as one contact is enough there, and on a mesh without
+    those that its reach leaves out."""
     for pair in pairs:
         off = error * system.bodies[pair[0]].bounding_radius
         a, b = (_side(system, pose, mesh, number, off) for number in pair)
@@ -99,7 +99,7 @@ def _searched_pairs(
         if system.detection.on_mesh:
             has_to = apart > 0.0 and reach <= system.reach
         else:
-            has_to = not _where_walls_meet(system, b, foot)
+            has_to = not _where_pieces_meet(system, b, foot)
         if has_to:
             yield a, b, reach
 
@@ -186,9 +186,8 @@ def _searched(a: _Side, b: _Side) -> tuple[float, FloatArray]:
     return float(np.linalg.norm(point - foot)), foot
 
 
-def _where_walls_meet(system: System, side: _Side, foot: FloatArray) -> bool:
-    """Whether the side is a wall, and its point ``foot`` (1, d) is on another one too."""
-    if side.number < len(system.bodies):
-        return False
-    others = (wall.shape for wall in system.walls if wall.surface != side.number)
-    return any(abs(float(other.signed_distance(foot)[0])) <= side.off for other in others)
+def _where_pieces_meet(system: System, side: _Side, foot: FloatArray) -> bool:
+    """Whether the side is a wall, and its point ``foot`` (1, d) on the next piece of the boundary too."""
+    number = side.number - len(system.bodies)
+    others = (piece.shape for i, piece in enumerate(system.domain.pieces) if i != number)
+    return number >= 0 and any(abs(float(other.signed_distance(foot)[0])) <= side.off for other in others)

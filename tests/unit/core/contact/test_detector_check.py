@@ -211,7 +211,7 @@ def test_honest_detectors_pass() -> None:
             check_detector(system, system.pose, None, count)
 
 
-def test_a_place_at_which_two_walls_meet_may_be_a_contact_of_one_of_them() -> None:
+def test_a_place_at_which_two_pieces_meet_may_be_a_contact_of_one_of_them() -> None:
     system = assembled(rigidfluid.load_scene(SCENES / "insertion_2d.toml"))
     for count in range(20):
         check_detector(system, system.pose, None, count)
