@@ -99,7 +99,7 @@ def _searched_pairs(
         if system.detection.on_mesh:
             has_to = apart > 0.0 and reach <= system.reach
         else:
-            has_to = not _where_pieces_meet(system, b, foot)
+            has_to = not _pieces_meet(system, b, foot)
         if has_to:
             yield a, b, reach
 
@@ -186,7 +186,7 @@ def _searched(a: _Side, b: _Side) -> tuple[float, FloatArray]:
     return float(np.linalg.norm(point - foot)), foot
 
 
-def _where_pieces_meet(system: System, side: _Side, foot: FloatArray) -> bool:
+def _pieces_meet(system: System, side: _Side, foot: FloatArray) -> bool:
     """Whether the side is a wall, and its point ``foot`` (1, d) on the next piece of the boundary too."""
     number = side.number - len(system.bodies)
     others = (piece.shape for i, piece in enumerate(system.domain.pieces) if i != number)
