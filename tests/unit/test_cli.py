@@ -72,15 +72,17 @@ HEAVY = {
     *("scipy.integrate", "scipy.interpolate", "scipy.ndimage", "scipy.optimize", "scipy.signal", "scipy.stats"),
 }
 """What no run of balls between flat walls needs."""
-OF_A_FLUID = {"mmgpy", "netgen", "pypardiso", "skfem", "scipy.sparse.linalg", "scipy.spatial", "scipy.special"}
+TREES = {"scipy.spatial", "scipy.special"}
+"""What few points need not."""
+OF_A_FLUID = {"mmgpy", "netgen", "pypardiso", "skfem", "scipy.sparse.linalg"}
 """What a scene without a fluid needs not either."""
 
 
 @pytest.mark.parametrize(
     ("scene", "settings", "unneeded"),
     [
-        ("dry_bounce", ["time.end=0.001"], HEAVY | OF_A_FLUID),
-        ("falling_disk", ["time.end=0.001", "mesh.size=0.5", "mesh.size_body=0.1"], HEAVY),
+        ("dry_bounce", ["time.end=0.001"], HEAVY | TREES | OF_A_FLUID),
+        ("falling_disk", ["time.end=0.001", "mesh.size=0.5", "mesh.size_body=0.1"], HEAVY | TREES),
     ],
 )
 def test_a_run_imports_only_what_its_scene_needs(

@@ -25,6 +25,10 @@ MOST_SCALED = 0.1
 """Greatest relative imbalance of inflow and outflow that a coarse mesh may make of equal ones [1]."""
 
 
+_FEW = 10**6
+"""Number of pairs of points up to which all are looked at: so many take as long as SciPy's trees to load."""
+
+
 class Surfaces:
     """Which velocities are free on one mesh topology, and the values of the others.
 
@@ -220,11 +224,18 @@ def pressure_pin_vertex(surfaces: Surfaces, mesh: Mesh) -> int | None:
     ranks, bodies = surfaces.ranks, len(surfaces.body_nodes)
     on_bodies = np.concatenate(ranks.allgather(mesh.points[np.unique(mesh.facets[mesh.markers < bodies])]))
     origin = on_bodies if len(on_bodies) else mesh.points[:1]
-    distance = np.asarray(scipy.spatial.cKDTree(origin).query(mesh.points)[0])
+    distance = _nearest_distance(mesh.points, origin)
     inside = surfaces.velocity_free[: len(mesh.points)].all(axis=1)
     preference = distance + np.where(inside, float(ranks.greatest(distance.max())), 0.0)
     local = int(np.argmax(preference))
     return local if int(np.argmax(ranks.allgather(preference[local]))) == ranks.rank else None
+
+
+def _nearest_distance(points: FloatArray, others: FloatArray) -> FloatArray:
+    """Distance (N,) of each point to the nearest of ``others`` (M, d) [length]."""
+    if len(points) * len(others) > _FEW:
+        return np.asarray(scipy.spatial.cKDTree(others).query(points)[0])
+    return np.asarray(np.linalg.norm(points[:, None] - others, axis=2).min(axis=1))
 
 
 def _free_components(face: Face, dimension: int) -> BoolArray:

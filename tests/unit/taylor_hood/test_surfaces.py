@@ -5,12 +5,13 @@ from __future__ import annotations
 from functools import partial
 
 import numpy as np
+import pytest
 
 from rigidfluid.core.case.expressions import VectorExpression
 from rigidfluid.core.fluid.conditions import PrescribedVelocity
 from rigidfluid.taylor_hood.numbering import Numbering
-from rigidfluid.taylor_hood.surfaces import Surfaces
-from rigidfluid.testing.fluid.boxes import box
+from rigidfluid.taylor_hood.surfaces import Surfaces, pressure_pin_vertex
+from rigidfluid.testing.fluid.boxes import box, box_with_balls
 from rigidfluid.testing.fluid.exact import problem
 
 
@@ -26,3 +27,17 @@ def test_inflow_and_outflow_of_an_enclosed_flow_are_made_equal_on_the_mesh() -> 
     ends = np.isin(points[:, 0], (0.0, 1.0))
     profile = np.column_stack([points[:, 1] * (1.0 - points[:, 1]), np.zeros(len(points))])
     np.testing.assert_allclose(found[ends], profile[ends], rtol=2e-4)
+
+
+@pytest.mark.parametrize("most_pairs", [10**6, 0])
+def test_the_pressure_pin_is_the_inner_vertex_farthest_from_bodies(
+    most_pairs: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Among all pairs of vertices, and by a tree."""
+    monkeypatch.setattr("rigidfluid.taylor_hood.surfaces._FEW", most_pairs)
+    mesh = box_with_balls(2)
+    surfaces = Surfaces(Numbering(mesh.cells, len(mesh.points)), mesh, problem(2, bodies=2).conditions, (0, 1))
+    inner = np.setdiff1d(np.arange(len(mesh.points)), mesh.facets)
+    on_bodies = mesh.points[np.unique(mesh.facets[mesh.markers < 2])]
+    apart = np.linalg.norm(mesh.points[inner, None] - on_bodies, axis=2).min(axis=1)
+    assert pressure_pin_vertex(surfaces, mesh) == inner[np.argmax(apart)]

@@ -13,6 +13,7 @@ from rigidfluid.core.geometry.facets import enclosed_volume
 from rigidfluid.core.geometry.mesher_unit import in_unit, mesher_unit
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.inserter import MESHER_TIMEOUT
+from rigidfluid.core.mesh.same_points import rows_of
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.surface_checks import refuse_unfillable
 from rigidfluid.core.mesh.surface_mesh import surface_mesh
@@ -80,13 +81,10 @@ def filled(surface: Mesh, size: float, growth: float, timeout: float) -> tuple[F
 
 def _with_facets(points: FloatArray, cells: IntArray, surface: Mesh) -> Mesh:
     """A mesh of the cells, with the surface's facets and its vertices to the last bit."""
-    from scipy.spatial import cKDTree
-
     used, compact = np.unique(cells, return_inverse=True)
     points, cells = points[used], compact.reshape(cells.shape)
-    found = cKDTree(points).query(surface.points)
-    distance, place = np.asarray(found[0]), np.asarray(found[1])
-    if distance.max() > 1e-9 * np.ptp(surface.points, axis=0).max() or len(np.unique(place)) < len(place):
+    place = rows_of(surface.points, points, 1e-9 * float(np.ptp(surface.points, axis=0).max()))
+    if place is None:
         raise MeshError("mesh", "a vertex lost by Netgen", "every vertex of the surfaces kept", REMEDY)
     points[place] = surface.points
     return Mesh(points, cells, place[surface.facets], surface.markers)

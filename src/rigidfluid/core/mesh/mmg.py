@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.mesh.same_points import rows_of
 from rigidfluid.core.mesh.signals import kept_signals
 from rigidfluid.core.mesh.topology import REMEDY
 from rigidfluid.core.model.types import Mesh
@@ -94,13 +95,9 @@ def with_kept_facets(new: Mesh, outer: BoolArray, old: Mesh, kept: Kept, given: 
     MMG scales the ``given`` coordinates and back, so that they return changed by round-off; vertices are recognised by
     nearness.
     """
-    from scipy.spatial import cKDTree
-
     old_vertices = np.union1d(old.facets[kept.facets], old.cells[kept.cells])
-    found = cKDTree(new.points).query(given[old_vertices])
-    distance, place = np.asarray(found[0]), np.asarray(found[1])
-    shortest = 1e-9 * np.ptp(old.points, axis=0).max()
-    if len(np.unique(place)) < len(place) or np.any(distance > shortest):
+    place = rows_of(given[old_vertices], new.points, 1e-9 * float(np.ptp(old.points, axis=0).max()))
+    if place is None:
         raise MeshError("mesh", "a vertex lost by MMG", "every vertex of bodies and curved walls kept", REMEDY)
     number = np.zeros(len(old.points), dtype=np.int64)
     number[old_vertices] = place
