@@ -41,7 +41,7 @@ def picture(history: History, folder: Path) -> Figure:
         axes.set(xlim=(0, 2), ylim=(0, 6), title=f"{moment:g} s", xticks=[], yticks=[])
     draw(panels[3], series, MOMENTS[-1])
     panels[3].triplot(corner_triangles(read_vtu(nearest(series, MOMENTS[-1]))), color="white", linewidth=0.25)
-    panels[3].set(xlim=(0.5, 1.5), ylim=(-0.03, 1.6667), title=f"mesh at {MOMENTS[-1]:g} s", xticks=[], yticks=[])
+    panels[3].set(xlim=(0.5, 1.5), ylim=(0, 1.6667), title=f"mesh at {MOMENTS[-1]:g} s", xticks=[], yticks=[])
     left.colorbar(colours, ax=panels, location="bottom", label="speed [cm/s]", shrink=0.6, aspect=40, pad=0.03)
     compare(right.subplots(), history)
     return figure
