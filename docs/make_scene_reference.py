@@ -17,8 +17,9 @@ HEAD = """# What a scene may contain
 This page is made from the models by `python docs/make_scene_reference.py`; a test fails if it is out of date.
 
 Units are free but must be consistent, for example all in cm, g and s, or all in m, kg and s. `d` is the dimension. In
-2D all quantities are per unit depth, so a density is in mass/length². Keys that nothing reads are refused. On the
-command line, `--set table.key=value` overrides a key; entries of lists are counted from 0, as in `body.0.density`.
+2D all quantities are per unit depth: a density has the number of the 3D material's and the unit mass/length² per unit
+depth ([what 2D means](units.md#what-2d-means)). Keys that nothing reads are refused. On the command line, `--set
+table.key=value` overrides a key; entries of lists are counted from 0, as in `body.0.density`.
 
 Editors that use taplo, such as VS Code with Even Better TOML, complete and check keys and names of parts. For this, run
 `rigidfluid schema > scene.schema.json`, and make `#:schema scene.schema.json` the first line of the scene.

@@ -13,7 +13,8 @@ HEAD = """# Gallery
 
 Each scene is a file in `scenes/`: `rigidfluid run scenes/NAME.toml` runs it, and `rigidfluid check scenes/NAME.toml`
 estimates before how long that takes. Times and colours are in the units of the scene; a colour means the same at all
-times of a picture.
+times of a picture. Bodies in a flow are grey, what is hatched lies outside the domain, and white lines with
+arrows are streamlines. Movies of runs also have [a black bar on each body](results.md#movie), which turns with it.
 
 `python docs/make_gallery.py` makes this page from the heads of the scenes; a test fails where it is out of date.
 `python docs/make_pictures.py` runs them and makes the pictures.
