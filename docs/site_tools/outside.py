@@ -1,4 +1,4 @@
-"""Pages whose text is a file outside of docs/, and links that lead out of docs/."""
+"""Pages whose text is another file, mostly outside of docs/, and links that lead out of docs/."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from site_tools.notebook import page_text
+
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
 
@@ -14,6 +16,7 @@ DOCS = Path(__file__).parents[1]
 ROOT = DOCS.parent
 READMES = {readme.parent.name: f"plugins/{readme.parent.name}/README.md" for readme in ROOT.glob("plugins/*/README.md")}
 OUTSIDE = {
+    "howto/notebook": "docs/howto/notebook.ipynb",
     "project/architecture": "ARCHITECTURE.md",
     "project/changes": "CHANGELOG.md",
     "project/contributing": "CONTRIBUTING.md",
@@ -36,6 +39,8 @@ def show(_: Sphinx, docname: str, source: list[str]) -> None:
     """Put the file in the place of the page that shows it, and turn its links to where the site has their targets."""
     file = ROOT / OUTSIDE[docname] if docname in OUTSIDE else DOCS / f"{docname}.md"
     text = file.read_text(encoding="utf-8") if docname in OUTSIDE else source[0]
+    if file.suffix == ".ipynb":
+        text = page_text(text)
     source[0] = _LINK.sub(lambda link: f"]({relinked(link[1], file, docname)}{link[2] or ''})", text)
 
 

@@ -21,6 +21,7 @@ DOCS = ROOT / "docs"
         ("docs/units.md", "CHANGELOG.md", "project/changes", "../units.md"),
         ("../../README.md", "plugins/rigidfluid-coal/README.md", "packages/rigidfluid-coal", "../index.md"),
         ("ARCHITECTURE.md", "CONTRIBUTING.md", "project/contributing", "architecture.md"),
+        ("notebook.ipynb", "docs/howto/results-in-python.md", "howto/results-in-python", "notebook.md"),
     ],
 )
 def test_a_link_leads_to_where_the_site_has_its_target(link: str, file: str, page: str, path: str) -> None:

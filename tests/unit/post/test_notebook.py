@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import json
 import re
 from pathlib import Path
 from types import SimpleNamespace
@@ -11,8 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.image import imread
-from paths import ROOT
 from scenes import dry_tables
+from site_tools.notebook import NOTEBOOK, input_digest, page_text
 
 from rigidfluid.api import ArgumentError, History, NotebookProgress, OutputError, Progress, run, scene_from_dict
 from rigidfluid.post import notebook
@@ -132,14 +133,36 @@ def test_a_program_without_a_notebook_is_told(monkeypatch: pytest.MonkeyPatch) -
         NotebookProgress()
 
 
+def test_the_documentation_shows_what_its_notebook_stores() -> None:
+    stored = json.loads(NOTEBOOK.read_text(encoding="utf-8"))
+    code = [cell for cell in stored["cells"] if cell["cell_type"] == "code"]
+    assert stored["metadata"]["executed_input"] == input_digest(stored), "run python docs/make_notebook.py"
+    assert [cell["execution_count"] for cell in code] == [1, 2, 3, 4, 5]
+    assert all(cell["outputs"] for cell in code)
+    assert NOTEBOOK.stat().st_size < 200 * 1024
+    text = page_text(NOTEBOOK.read_text(encoding="utf-8"))
+    assert text.startswith("# A run in a notebook\n")
+    assert text.count("```python\n") == len(code)
+    assert text.count("<img ") == 2, "the plot of the run, and the figure"
+
+
+def test_an_edited_cell_is_told() -> None:
+    stored = json.loads(NOTEBOOK.read_text(encoding="utf-8"))
+    stored["cells"][1]["source"].append("\nscene.time")
+    assert stored["metadata"]["executed_input"] != input_digest(stored)
+
+
 @pytest.mark.long
 def test_the_notebook_of_the_documentation_runs(tmp_path: Path) -> None:
-    nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")
-    pytest.importorskip("ipykernel")
-    pytest.importorskip("pandas")
-    cells = nbformat.read(ROOT / "docs" / "howto" / "notebook.ipynb", as_version=4)
-    nbclient.NotebookClient(cells, timeout=240, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    nbformat = pytest.importorskip("nbformat")
+    for name in ("nbclient", "ipykernel", "pandas"):
+        pytest.importorskip(name)
+    from make_notebook import executed
+
+    cells = executed(tmp_path)
     outputs = [one for cell in cells.cells if cell.cell_type == "code" for one in cell.outputs]
+    stored = [one for cell in nbformat.read(NOTEBOOK, as_version=4).cells for one in cell.get("outputs", ())]
+    assert [(one.output_type, set(one.data)) for one in outputs] == [(one.output_type, set(one.data)) for one in stored]
     assert {one.output_type for one in outputs} == {"display_data", "execute_result"}, "no warnings, no prints"
     html = [one.data.get("text/html", "") for one in outputs]
     assert sum("<progress" in text for text in html) == 1
