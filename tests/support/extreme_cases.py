@@ -31,7 +31,6 @@ from fluid_contacts import Stepping, put_in
 from rigidfluid.core.model.system import System
 from rigidfluid.core.output.energy_account import NOTICEABLE, energy_account
 from rigidfluid.core.output.history import History
-from rigidfluid.core.run.process import one_openblas_thread
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.run.turn_remarks import turn_remarks
 from rigidfluid.core.scene.scene import Scene
@@ -115,14 +114,13 @@ def findings(case: Case) -> list[Finding]:
     list of Finding
         At least one.
     """
-    with one_openblas_thread():
-        try:
-            run = Simulation(case.scene(), None, False)
-            run.go()
-        except (MeshError, StepError) as error:
-            expected = bool(case.stops) and case.stops in error.remedy
-            return [Finding(ENDS, _demanded_end(case), f"stops: {error}", expected)]
-        run.finish("complete")
+    try:
+        run = Simulation(case.scene(), None, False)
+        run.go()
+    except (MeshError, StepError) as error:
+        expected = bool(case.stops) and case.stops in error.remedy
+        return [Finding(ENDS, _demanded_end(case), f"stops: {error}", expected)]
+    run.finish("complete")
     if case.stops:
         return [Finding(ENDS, _demanded_end(case), ENDS, False)]
     values = [(demand, FIGURES[demand.figure](run.system, run.history)) for demand in case.demands]

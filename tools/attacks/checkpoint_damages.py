@@ -176,7 +176,7 @@ def _set_to_next_value(file: h5py.File, name: str) -> None:
 
 
 def _set_to_nan(file: h5py.File, name: str) -> None:
-    if isinstance(file[name], h5py.Dataset) and file[name].dtype.kind == "f":
+    if isinstance(file[name], h5py.Dataset) and file[name].dtype.kind == "f" and file[name].size:
         file[name][...] = np.nan
     else:
         _remove(file, name)

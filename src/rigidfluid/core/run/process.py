@@ -13,9 +13,10 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from types import FrameType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rigidfluid.core.geometry.interrupts import is_interrupt
 
@@ -162,17 +163,22 @@ def _other_losses_told() -> Iterator[None]:
 
 
 def one_openblas_thread() -> AbstractContextManager[object]:
-    """Keep OpenBLAS, which serves NumPy's short dot products, to one thread while a run lasts.
+    """Keep OpenBLAS, which serves NumPy's and SciPy's short vectors, to one thread.
 
-    Its idle threads spin, and take the cores from MKL and from everything else: with them a step of 16,000 unknowns
-    took five times as long on two busy cores. One thread also makes sums repeatable to the last bit.
+    Its idle threads spin, and take the cores from MKL and from everything else: with them a run of 7,000 unknowns took
+    three times as long. One thread also makes sums repeatable to the last bit.
     """
+    limit: AbstractContextManager[object] = _openblas().limit(limits=1, user_api="blas")
+    return limit
+
+
+@cache
+def _openblas() -> Any:
+    """The libraries to be limited: NumPy's, and SciPy's own, which numba loads later if it is not loaded here."""
+    import scipy.linalg  # noqa: F401
     from threadpoolctl import ThreadpoolController
 
-    limit: AbstractContextManager[object] = (
-        ThreadpoolController().select(internal_api="openblas").limit(limits=1, user_api="blas")
-    )
-    return limit
+    return ThreadpoolController().select(internal_api="openblas")
 
 
 _STATUS = Path("/proc/self/status")

@@ -12,7 +12,7 @@ from rigidfluid.core.case.scene_model import Case
 from rigidfluid.core.model.foreign import no_exit
 from rigidfluid.core.output.history import History
 from rigidfluid.core.run.caller_input import require_function
-from rigidfluid.core.run.process import give_back_memory, one_openblas_thread, remembered_interrupt
+from rigidfluid.core.run.process import give_back_memory, remembered_interrupt
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.run.summary import warnings_of
 from rigidfluid.errors import OutputError, RigidfluidError, RunWarning, SharedInterrupt
@@ -80,7 +80,7 @@ def simulate(
 ) -> History:
     """Run a scene or a model to its end, as `run` does without its warnings; ``finished`` is called with the results
     once they are summed up, also where the run then raises what stopped it."""
-    with one_openblas_thread(), no_exit(), closing(Simulation(case, out, resume, processes)) as simulation:
+    with no_exit(), closing(Simulation(case, out, resume, processes)) as simulation:
         if progress is not None:
             require_function("progress", progress, "a function of a Progress, or None")
             simulation.observe(lambda now: progress(_progress(now)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 
@@ -41,6 +42,7 @@ from rigidfluid.core.run.caller_input import (
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.initial_state import initial_state
 from rigidfluid.core.run.mesh_keys import updater_of
+from rigidfluid.core.run.process import one_openblas_thread
 from rigidfluid.core.run.resumption import earlier_of, recall_memory
 from rigidfluid.core.run.schedule import Schedule
 from rigidfluid.core.run.stepper import Counts, Stepper
@@ -135,7 +137,7 @@ class Simulation(Described):
         self._writer: Writer | None = None
         self._observers: list[tuple[Schedule, Observer]] = []
         try:
-            with told_memory():
+            with told_memory(), self._threads():
                 if earlier is None:
                     self._begin(out)
                 else:
@@ -234,7 +236,7 @@ class Simulation(Described):
         if self.ended:
             remedy = "Move time.end in the scene."
             raise StepError("a step", f"one after the end, {self.time:g}", f"steps until {self.clock.end:g}", remedy)
-        with told_memory():
+        with told_memory(), self._threads():
             self.state = self.stepper.after(self.state)
         self._record()
         for schedule, observer in self._observers:
@@ -387,6 +389,10 @@ class Simulation(Described):
         if self._writer is not None and self._writer.closed:
             remedy = "Make another Simulation, with resume=True to go on."
             raise OutputError(str(self._writer.out), f"{wanted} after close()", f"{wanted} before it", remedy)
+
+    def _threads(self) -> AbstractContextManager[object]:
+        """One thread of OpenBLAS in a fluid: without one there are no vectors that it would share out."""
+        return one_openblas_thread() if self.system.has_fluid else nullcontext()
 
     def _begin(self, out: Path | None) -> None:
         self._elapsed_before = self._cpu_before = 0.0
