@@ -25,11 +25,12 @@ def page_text(text: str) -> str:
 def _parts(cell: dict[str, Any]) -> list[str]:
     if cell["cell_type"] == "markdown":
         return [_text(cell["source"])]
-    return [f"```python\n{_text(cell['source'])}\n```", *(_shown(one["data"]) for one in cell["outputs"])]
+    return [f"```python\n{_text(cell['source'])}\n```", *map(_shown, cell["outputs"])]
 
 
-def _shown(data: dict[str, Any]) -> str:
-    """What a browser shows of one output: its page, its picture, or else its text."""
+def _shown(output: dict[str, Any]) -> str:
+    """Markdown of one output: its page, its picture, or else its text."""
+    data = output.get("data") or {"text/plain": output.get("text", "")}
     if "text/html" in data:
         html = _text(data["text/html"])
     elif "image/png" in data:

@@ -58,7 +58,7 @@ def dry_run_time_findings(system: System, time: TimeTable) -> Iterator[Finding]:
     if system.law is not None:
         most += steps * len(system.bodies) * _DRY_CONTACT_SECONDS[bool(system.balls.all())] / speed
     found: Figures = {"steps": steps, "meshes": 0, "least": least, "most": most, "speed": speed}
-    text = f"{steps} steps without a fluid take {time_in_words(least, most)} of one core, as fast as now"
+    text = f"{steps} steps without a fluid take {time_in_words(least, most)} of one core at its present speed"
     yield Finding("note", QUESTION, (), text, found=found)
 
 

@@ -22,7 +22,7 @@ class BruteForceOptions(PartOptions):
     """Keys of the ``[contact]`` table with detector ``brute_force``: ``samples``, points on each surface [1]."""
 
     samples: int = Field(
-        default=1000, ge=10, description="Points tested on each surface before the nearest are refined [1]"
+        default=1000, ge=100, description="Points tested on each surface before the nearest are refined [1]"
     )
 
 

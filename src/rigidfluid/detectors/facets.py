@@ -223,9 +223,17 @@ def _pair_touches(a: _Placed, b: _Placed | _Wall, reach: float, spread: float) -
         assert isinstance(b, _Facets | _Round)
         parts = [_smooth_touches(a, b, reach, spread)]
     found = Touches(*(np.concatenate(each) for each in zip(*parts, strict=True)))
+    if isinstance(b, _Round):
+        found = _without_repeats(found)
     least = found.gap.min(initial=np.inf)
     found = found.select((found.gap <= reach) & (found.gap <= max(least, 0.0) + spread))
     return Touches(*(each[np.argsort(found.gap, kind="stable")] for each in found))
+
+
+def _without_repeats(found: Touches) -> Touches:
+    """The contacts, each pair of points once: a corner may also be the point nearest to a wall that bulges."""
+    points = np.concatenate([found.point_a, found.point_b], axis=1)
+    return found.select(np.sort(np.unique(points, axis=0, return_index=True)[1]))
 
 
 def _smooth_touches(body: _Ball | _Ellipsoid, other: _Facets | _Round, reach: float, spread: float) -> Touches:

@@ -21,6 +21,7 @@ from rigidfluid.core.model.interfaces import Body, PartOptions
 from rigidfluid.core.model.types import Contacts, Pose
 from rigidfluid.detectors.facets import FacetDetector
 from rigidfluid.detectors.sphere import SphereDetector
+from rigidfluid.domains.arc import Arc
 from rigidfluid.errors import SceneError
 
 FLOOR = Wall(9, "floor", Plane(np.zeros(2), np.array([0.0, 1.0])))
@@ -243,3 +244,13 @@ def test_a_cube_lies_on_four_corners_and_on_a_turned_cube_on_eight_crossing_edge
     np.testing.assert_allclose(stacked.gap[:8], 0.01, rtol=1e-11)
     np.testing.assert_allclose(np.max(np.abs(stacked.point_a[:8, :2]), axis=1), 0.5, rtol=1e-12)
     assert stacked.gap[8:].min() > 0.2  # corners beside the other cube
+
+
+def test_a_corner_that_is_the_nearest_to_a_bump_is_one_contact() -> None:
+    bump = Wall(9, "bump", Arc(np.array([0.0, -0.2]), 0.6, Plane(np.zeros(2), np.array([0.0, 1.0]))))
+    random = np.random.default_rng(0)
+    for _ in range(50):
+        x, y, angle = random.uniform([-0.5, 1.6, 0.0], [0.5, 3.0, 7.0])
+        contacts = found([polygon(SQUARE)], pose((x, y, angle)), bump)
+        points = np.concatenate([contacts.point_a, contacts.point_b], axis=1)
+        assert len(np.unique(points, axis=0)) == len(points) > 0

@@ -146,6 +146,12 @@ def test_the_documentation_shows_what_its_notebook_stores() -> None:
     assert text.count("<img ") == 2, "the plot of the run, and the figure"
 
 
+def test_the_documentation_shows_what_a_cell_prints() -> None:
+    printed = {"output_type": "stream", "name": "stdout", "text": ["one\n", "two\n"]}
+    cell = {"cell_type": "code", "source": ["print(1)"], "outputs": [printed]}
+    assert "```text\none\ntwo\n\n```" in page_text(json.dumps({"cells": [cell]}))
+
+
 def test_an_edited_cell_is_told() -> None:
     stored = json.loads(NOTEBOOK.read_text(encoding="utf-8"))
     stored["cells"][1]["source"].append("\nscene.time")

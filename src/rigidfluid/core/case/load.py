@@ -96,7 +96,7 @@ def _check_remaining(data: Mapping[str, Any], refused: Sequence[str], registry: 
     tables, kept = remaining_tables(data, refused)
     with told_by_numbers(kept), all_told() as ask:
         scene = read_table(Scene, tables)
-        domain = ask(scene_domain, scene.domain, (), registry, scene.dimension)
+        domain = ask(scene_domain, scene.domain, registry, scene.dimension)
         mechanisms = ask(placed_mechanisms, scene.mechanism, registry, scene.dimension)
         bodies = [ask(scene_body, table, f"body.{n}", registry, scene.dimension) for n, table in enumerate(scene.body)]
         if domain is not None:

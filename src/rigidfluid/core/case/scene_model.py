@@ -22,7 +22,7 @@ from rigidfluid.core.model.interfaces import Body, Detector, Part
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.nested.part_options import build_part, own_options, read_options, refuse_unread
 from rigidfluid.core.scene.all_errors import all_told
-from rigidfluid.core.scene.scene import AUTO, BodyTable, BoundaryTable, ContactTable, DomainTable, Scene
+from rigidfluid.core.scene.scene import AUTO, BodyTable, ContactTable, DomainTable, Scene
 from rigidfluid.core.setup.contact_laws import ContactLaw
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.core.setup.made_bodies import check_made_bodies
@@ -76,10 +76,10 @@ def _kept(this: _ThisScene) -> Model:
 def _model(scene: Scene, registry: Registry) -> Model:
     with all_told() as ask:
         ask(check_contact_table, scene.contact, scene.interaction)
-        domain = ask(scene_domain, scene.domain, scene.boundary, registry, scene.dimension)
+        domain = ask(scene_domain, scene.domain, registry, scene.dimension)
         if domain is not None:
             domain = domain.called(_names_used(scene))
-            ask(check_boundary_tables, scene.boundary, domain, scene.time.end)
+            domain = ask(_with_pairs, domain, scene) or domain
         mechanisms = ask(placed_mechanisms, scene.mechanism, registry, scene.dimension)
         bodies = tuple(
             ask(scene_body, table, f"body.{n}", registry, scene.dimension) for n, table in enumerate(scene.body)
@@ -147,11 +147,16 @@ def _with_names_of(domain: Domain, law: ContactLaw) -> ContactLaw:
     return replace(law, names=tuple(names.get(name, name) for name in law.names))
 
 
-def scene_domain(table: DomainTable, boundary: Sequence[BoundaryTable], registry: Registry, dimension: int) -> Domain:
-    """The domain of a scene, with pairs of periodic surfaces; raises SceneError or PluginError."""
+def scene_domain(table: DomainTable, registry: Registry, dimension: int) -> Domain:
+    """The domain of a scene, without pairs of periodic surfaces; raises SceneError or PluginError."""
     part = registry.get(DOMAIN, table.type)
-    domain = part(read_options(part, table.options, type(table).model_fields, "domain"), dimension)
-    return domain.with_periodic(periodic_pairs(boundary, domain))
+    return part(read_options(part, table.options, type(table).model_fields, "domain"), dimension)
+
+
+def _with_pairs(domain: Domain, scene: Scene) -> Domain:
+    """The domain with the scene's pairs of periodic surfaces; raises SceneError for what is wrong with its tables."""
+    check_boundary_tables(scene.boundary, domain, scene.time.end)
+    return domain.with_periodic(periodic_pairs(scene.boundary, domain))
 
 
 def scene_body(table: BodyTable, at: str, registry: Registry, dimension: int) -> RigidBody:

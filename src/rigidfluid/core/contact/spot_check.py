@@ -9,7 +9,7 @@ from rigidfluid.core.model.types import Mesh, Pose
 
 _EARLY = {1, 2, 4, 8, 16, 32, 64}
 _EVERY = 128
-"""Numbers of steps after which parts are checked: a check takes about as long as a dry step of few bodies."""
+"""Numbers of steps after which parts are checked: a check takes as long as two or three dry steps of few bodies."""
 
 
 def is_due(count: int) -> bool:

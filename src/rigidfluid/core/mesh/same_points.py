@@ -21,7 +21,9 @@ def rows_of(wanted: FloatArray, points: FloatArray, within: float) -> IntArray |
     count = np.searchsorted(height[order], level + slack, side="right") - first
     one = np.repeat(np.arange(len(wanted)), count)
     row = order[np.arange(len(one)) + np.repeat(first - (np.cumsum(count) - count), count)]
-    same = np.linalg.norm(points[row] - wanted[one], axis=1) <= within
-    one, row = one[same], row[same]
-    is_found = np.array_equal(one, np.arange(len(wanted))) and len(np.unique(row)) == len(row)
+    apart = np.linalg.norm(points[row] - wanted[one], axis=1)
+    nearest = np.lexsort((apart, one))
+    found, first = np.unique(one[nearest], return_index=True)
+    row, apart = row[nearest[first]], apart[nearest[first]]
+    is_found = len(found) == len(wanted) and np.all(apart <= within) and len(np.unique(row)) == len(row)
     return np.asarray(row) if is_found else None

@@ -17,18 +17,12 @@ _ENERGIES = ("kinetic_energy", "dissipation", "dissipation_midway", *_POWERS)
 
 
 def state(answer: Any, *_: Any, **__: Any) -> None:
-    """Refuse what is no mapping of names to arrays that a checkpoint can hold."""
+    """Refuse what is no mapping of names to arrays of finite numbers, which a checkpoint is checked for."""
     refuse_others(answer, Mapping)
     for name, values in answer.items():
         refuse_others(name, str, "name")
         if not (type(values) is np.ndarray and values.dtype.kind in "fiub"):
             raise Wrong(f"{name} {describe(values)}", "arrays of numbers")
-
-
-def memory(answer: Any, *_: Any) -> None:
-    """Refuse what is no mapping of names to arrays of finite numbers, which a checkpoint is checked for."""
-    state(answer)
-    for name, values in answer.items():
         if not np.isfinite(values).all():
             raise Wrong(f"{name} {values[~np.isfinite(values)].flat[0]}", "finite numbers")
 

@@ -449,7 +449,7 @@ class FluidBackend(Part):
         where the backend does not say."""
         return None
 
-    @gives(backends.memory)
+    @gives(backends.state)
     def memory(self) -> FluidState:
         """Data on which the next step depends besides the given state, to the last bit: named arrays for a checkpoint.
 

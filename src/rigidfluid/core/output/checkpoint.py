@@ -20,7 +20,7 @@ from rigidfluid.core.model.ranks import ALONE, Ranks
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.types import FluidState
 from rigidfluid.core.output.checkpoint_checks import json_table, require_sound
-from rigidfluid.core.output.disk import write_new
+from rigidfluid.core.output.disk import replace_file
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.result_file import require_result
 from rigidfluid.core.output.sealed_file import BLOCK, is_intact, is_sealed, seal
@@ -69,7 +69,7 @@ def stage_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
         file.attrs["format"] = FORMAT
         store(file, checkpoint)
     seal(image)
-    write_new(_staged(path), image.getbuffer())
+    replace_file(_staged(path), image.getbuffer())
 
 
 def adopt_checkpoint(path: Path) -> None:

@@ -65,6 +65,9 @@ _INFINITE = ("gaps", "smallest_gap", "since_start", "error", "with_contacts")
 _UNKNOWN = ("radius_a", "radius_b", "effective_radius", "load_before", "quality")
 """Names of what may be infinite, and of what may also be no number, as it is not known."""
 
+_OF_BACKENDS = ("memory/", "state/fluid/")
+"""Arrays of a backend, which may have any names and signs."""
+
 _POSITIVE = ("state/past/step", "ranks")
 _NOT_NEGATIVE = ("elapsed", "cpu_time", "highest_speed", "seconds", "times")
 """Numbers that are above 0, and those that are no less; whole ones are none below 0 anyhow."""
@@ -121,6 +124,9 @@ def _values(record: Any, path: str) -> Iterator[tuple[str, Any]]:
 
 def _require_range(name: str, values: Any) -> None:
     """Raise Misfit where numbers are not finite, but for those that may be, or are negative where none can be."""
+    if name.startswith(_OF_BACKENDS):
+        _require(name, values, np.isfinite(values), "finite numbers")
+        return
     parts = name.split("/")
     if values.dtype.kind == "f":
         may_be_infinite = parts[-1] in _INFINITE

@@ -16,7 +16,7 @@ def open_new(path: Path) -> BinaryIO:
     return path.open("xb")
 
 
-def write_new(path: Path, data: bytes | memoryview) -> None:
+def replace_file(path: Path, data: bytes | memoryview) -> None:
     """Write a file by `open_new`."""
     with open_new(path) as file:
         file.write(data)
@@ -26,7 +26,7 @@ def replace_text(path: Path, text: str) -> None:
     """Write a file as a whole: one that cannot be written leaves the one before, or none."""
     staged = path.with_name(path.name + ".part")
     try:
-        write_new(staged, text.encode())
+        replace_file(staged, text.encode())
         staged.replace(path)
     except OSError:
         staged.unlink(missing_ok=True)

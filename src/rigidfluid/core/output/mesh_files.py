@@ -10,7 +10,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import IntArray
 from rigidfluid.core.model.types import Mesh
-from rigidfluid.core.output.disk import write_new
+from rigidfluid.core.output.disk import replace_file
 from rigidfluid.core.output.vtu import data_array, in_space
 
 FLUID = "fluid"
@@ -61,7 +61,7 @@ def write_msh(path: Path, mesh: Mesh, names: Sequence[str]) -> None:
     lines += ["$EndNodes", "$Elements", str(len(mesh.facets) + len(mesh.cells))]
     lines += _elements(mesh.facets, mesh.markers + 1, 1)
     lines += _elements(mesh.cells, np.full(len(mesh.cells), len(groups)), len(mesh.facets) + 1)
-    write_new(path, "\n".join([*lines, "$EndElements", ""]).encode())
+    replace_file(path, "\n".join([*lines, "$EndElements", ""]).encode())
 
 
 def _elements(simplices: IntArray, groups: IntArray, first: int) -> list[str]:

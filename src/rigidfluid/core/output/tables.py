@@ -17,7 +17,7 @@ from zlib import crc32
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidfluid.core.output.disk import write_new
+from rigidfluid.core.output.disk import replace_file
 from rigidfluid.core.output.records import Row
 from rigidfluid.core.output.result_file import require_result
 from rigidfluid.errors import OutputError
@@ -72,7 +72,7 @@ class Table:
         self.written = Prefix() if kept is None else kept
         """Content so far."""
         if kept is None:
-            write_new(path, b"")
+            replace_file(path, b"")
             self.extend([tuple(columns)])
         else:
             kept.require(path)

@@ -162,14 +162,36 @@ def _other_losses_told() -> Iterator[None]:
         sys.unraisablehook = before
 
 
+class _SharedLimit:
+    """One thread of OpenBLAS while any run of this process is within: set by the first, taken back by the last."""
+
+    def __init__(self) -> None:
+        self._lock, self._inside = threading.Lock(), 0
+        self._limit: Any = None
+
+    def __enter__(self) -> None:
+        with self._lock:
+            if self._inside == 0:
+                self._limit = _openblas().limit(limits=1, user_api="blas")
+            self._inside += 1
+
+    def __exit__(self, *_: object) -> None:
+        with self._lock:
+            self._inside -= 1
+            if self._inside == 0:
+                self._limit.restore_original_limits()
+
+
+_LIMIT = _SharedLimit()
+
+
 def one_openblas_thread() -> AbstractContextManager[object]:
     """Keep OpenBLAS, which serves NumPy's and SciPy's short vectors, to one thread.
 
     Its idle threads spin, and take the cores from MKL and from everything else: with them a run of 7,000 unknowns took
     three times as long. One thread also makes sums repeatable to the last bit.
     """
-    limit: AbstractContextManager[object] = _openblas().limit(limits=1, user_api="blas")
-    return limit
+    return _LIMIT
 
 
 @cache

@@ -21,7 +21,7 @@ _TOLERANCE = 1e-6
 
 def check_shapes(shapes: Sequence[Body]) -> None:
     """Raise PluginError for a shape that contradicts itself; those of rigidfluid are known not to."""
-    for shape in dict.fromkeys(shapes):
+    for shape in {id(shape): shape for shape in shapes}.values():
         if is_foreign(type(shape)):
             for key, found, allowed in _contradictions(shape):
                 raise part_error(shape, key, Wrong(found, allowed))

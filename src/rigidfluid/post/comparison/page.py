@@ -8,7 +8,7 @@ from pathlib import Path
 
 import matplotlib
 
-from rigidfluid.core.output.disk import write_new, writing
+from rigidfluid.core.output.disk import replace_file, writing
 from rigidfluid.core.scene.scene_text import scene_text
 from rigidfluid.post.comparison.comparison import Comparison
 from rigidfluid.post.comparison.figures import body_plot, difference_plot, most_different
@@ -32,7 +32,7 @@ def write_page(comparison: Comparison, name: str, out: Path) -> list[Path]:
     """
     with matplotlib.rc_context(STYLE), writing(out / PAGE):
         written, shown = save_pictures(_plots(comparison), out)
-        write_new(out / PAGE, _page(comparison, name, shown).encode())
+        replace_file(out / PAGE, _page(comparison, name, shown).encode())
     return [*written, out / PAGE]
 
 

@@ -9,7 +9,7 @@ from os import SEEK_END
 from pathlib import Path
 
 from rigidfluid.core.model.ranks import ALONE
-from rigidfluid.core.output.disk import write_new, writing
+from rigidfluid.core.output.disk import replace_file, writing
 from rigidfluid.core.output.result_file import require_result
 from rigidfluid.core.output.tables import table_path
 from rigidfluid.core.output.writer import earlier_run
@@ -48,7 +48,7 @@ def backend_run(
     file, log = out / f"{backend}.toml", out / f"{backend}.log"
     with writing(file):
         file.parent.mkdir(parents=True, exist_ok=True)
-        write_new(file, (scene_text(scene.to_dict()) + "\n").encode())
+        replace_file(file, (scene_text(scene.to_dict()) + "\n").encode())
     resume = not fresh and _can_resume(scene, folder)
     error = run_apart(file, folder, log, resume=resume, watch=lambda: progress(_time_reached(folder) / scene.time.end))
     return Run(backend, None, error) if error else _read(backend, folder)

@@ -9,7 +9,7 @@ import matplotlib
 
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Mesh
-from rigidfluid.core.output.disk import write_new
+from rigidfluid.core.output.disk import replace_file
 from rigidfluid.post.insertion.figures import Figures, SurfaceFigures
 from rigidfluid.post.insertion.pictures import histogram, plane_picture, space_picture
 from rigidfluid.post.reports.html import document, grid, picture, table
@@ -41,7 +41,7 @@ def write_page(figures: Figures, mesh: Mesh, system: System, out: Path) -> list[
         picture(cells, "How many cells have which quality, 1 that of a regular simplex."),
     ]
     path = out / PAGE
-    write_new(path, document(f"Mesh of {figures.name}", parts).encode())
+    replace_file(path, document(f"Mesh of {figures.name}", parts).encode())
     return [shown, cells, path]
 
 

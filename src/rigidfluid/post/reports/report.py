@@ -9,7 +9,7 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
-from rigidfluid.core.output.disk import write_new, writing
+from rigidfluid.core.output.disk import replace_file, writing
 from rigidfluid.core.output.results_folder import join_folder
 from rigidfluid.core.output.run_files import ADDED, FILES, RUN
 from rigidfluid.core.setup.model import Model
@@ -69,7 +69,7 @@ def report(out: Path, plane: PlaneName = "motion", follow: str | None = None, mo
             for name, caption, figure, kinds in _pictures(results, seen, body)
         )
         written, shown = save_pictures(named, out / FOLDER)
-        write_new(out / PAGE, page(results, _data(out), shown, _notes(results), _figures(results)).encode())
+        replace_file(out / PAGE, page(results, _data(out), shown, _notes(results), _figures(results)).encode())
     return [*written, out / PAGE]
 
 

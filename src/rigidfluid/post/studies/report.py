@@ -9,7 +9,7 @@ from pathlib import Path
 import matplotlib
 from matplotlib.figure import Figure
 
-from rigidfluid.core.output.disk import write_new, writing
+from rigidfluid.core.output.disk import replace_file, writing
 from rigidfluid.core.run.summary import versions
 from rigidfluid.post.reports.html import document, grid, picture, table
 from rigidfluid.post.reports.style import STYLE, save
@@ -40,7 +40,7 @@ def write_report(results: Results, out: Path) -> list[Path]:
         figure, caption = _plot(results, samples)
         plots = [] if figure is None else save(figure, out, PLOT, ("png", "svg"))
         pictures = [picture(path, caption) for path in plots[:1]]
-        write_new(out / PAGE, _page(results, pictures, grids).encode())
+        replace_file(out / PAGE, _page(results, pictures, grids).encode())
     return [*tables, *plots, out / PAGE]
 
 

@@ -43,7 +43,11 @@ def test_one_that_is_lost_is_seen() -> None:
 def test_two_that_are_at_one_are_seen() -> None:
     points = lattice(2)
     assert rows_of(points[[3, 3]], points, WITHIN) is None
-    assert rows_of(points[[3]], points[[3, 3]], WITHIN) is None
+
+
+def test_of_several_that_near_the_nearest_is_taken() -> None:
+    points = np.array([[0.0, 0.0], [0.3 * WITHIN, 0.0], [1.0, 0.0]])
+    np.testing.assert_array_equal(rows_of(points[[1, 2, 0]], points, WITHIN), [1, 2, 0])
 
 
 def test_none_are_found_where_none_are_wanted() -> None:

@@ -55,3 +55,24 @@ def printed(code: str) -> list[str]:
     environment["OPENBLAS_NUM_THREADS"] = "2"
     command = [sys.executable, "-c", code]
     return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout.splitlines()
+
+
+RUNS_AT_ONCE = """
+from rigidfluid.core.run.process import one_openblas_thread
+from threadpoolctl import threadpool_info
+
+def told():
+    print(*(pool["num_threads"] for pool in threadpool_info() if pool["internal_api"] == "openblas"))
+
+first, second = one_openblas_thread(), one_openblas_thread()
+first.__enter__()
+second.__enter__()
+first.__exit__(None, None, None)
+told()
+second.__exit__(None, None, None)
+told()
+"""
+
+
+def test_of_two_runs_at_once_the_last_gives_threads_back() -> None:
+    assert printed(RUNS_AT_ONCE) == ["1 1", "2 2"]

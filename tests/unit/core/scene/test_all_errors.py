@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import pickle
+import tomllib
 from pathlib import Path
 
 import pytest
 from paths import SCENES
 from typer.testing import CliRunner
 
-from rigidfluid import load_scene
+from rigidfluid import load_scene, scene_from_dict
 from rigidfluid.cli import app
 from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.places import line_of
@@ -279,3 +280,12 @@ def test_every_body_that_overlaps_is_told(tmp_path: Path) -> None:
 
     assert told.exit_code == 2
     assert [line.partition(": ")[0] for line in told.stderr.splitlines()[1:]] == [f"{path}:30", f"{path}:44"]
+
+
+def test_misspelt_names_of_periodic_surfaces_are_told_before_pairs_are_missed() -> None:
+    data = tomllib.loads((SCENES / "periodic_channel.toml").read_text(encoding="utf-8"))
+    data["boundary"][0]["on"] = "lefft"
+    data["boundary"].append({"on": "botom", "type": "slip"})
+    with pytest.raises(SceneErrors) as errors:
+        scene_from_dict(data)
+    assert [error.subject for error in errors.value.errors] == ["boundary.0.on", "boundary.2.on"]
