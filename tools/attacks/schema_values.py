@@ -190,7 +190,8 @@ def _floats(schema: Schema, _: int) -> st.SearchStrategy[float]:
 
 def _integers(schema: Schema, _: int) -> st.SearchStrategy[int]:
     least, most = _bounds(schema)
-    return st.integers(int(max(least, -5)), int(min(most, 40)))
+    lowest = int(max(least, -5))
+    return st.integers(lowest, int(min(most, max(lowest, 40))))
 
 
 def _bounds(schema: Schema) -> tuple[float, float]:
