@@ -56,6 +56,11 @@ class RigidfluidError(Exception):
         raised = f" Raised by {self.source}." if self.source else ""
         return f"{self.place}: {super().__str__()}{raised}" if self.place else super().__str__() + raised
 
+    @property
+    def single_errors(self) -> tuple[RigidfluidError, ...]:
+        """The errors that it tells of: itself, but where it stands for several."""
+        return (self,)
+
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle the error by its four parts, its place and its source, so that it can pass between processes."""
         origin = {"place": self.place, "source": self.source}
@@ -85,6 +90,11 @@ class SceneErrors(SceneError):
         self.errors = tuple(errors)
         first = self.errors[0]
         super().__init__(first.subject, first.found, first.allowed, first.remedy)
+
+    @property
+    def single_errors(self) -> tuple[RigidfluidError, ...]:
+        """Its errors."""
+        return self.errors
 
     def __str__(self) -> str:
         return "\n".join([f"{len(self.errors)} errors", *map(str, self.errors)])

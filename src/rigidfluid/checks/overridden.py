@@ -14,9 +14,7 @@ QUESTION = "boundary"
 def overridden_findings(tables: Sequence[BoundaryTable], domain: Domain) -> Iterator[Finding]:
     """Report tables of conditions without effect: on all surfaces that they name, later ones apply."""
     last = {piece.name: -1 for piece in domain.pieces}
-    named = [
-        [piece.name for piece in domain.pieces if table.on in (piece.name, piece.other_name, "all")] for table in tables
-    ]
+    named = [[piece.name for piece in domain.pieces if table.on in (*piece.all_names, "all")] for table in tables]
     for number, surfaces in enumerate(named):
         last |= dict.fromkeys(surfaces, number)
     for number, surfaces in enumerate(named):

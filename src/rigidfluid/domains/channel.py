@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from copy import copy
 from functools import cached_property
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 from pydantic import Field
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.piece import Piece
-from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.nested.bodies import NestedBodyTable
 from rigidfluid.domains.box import Box, BoxOptions
+from rigidfluid.domains.in_box import InBox
 from rigidfluid.domains.obstacles import Obstacles
 
 
@@ -31,7 +29,7 @@ class ChannelOptions(BoxOptions):
     )
 
 
-class Channel(Domain):
+class Channel(InBox):
     """{x : lower < x < upper} \\ ∪ K_i with obstacles K_i, of volume ∏ (upper - lower) - Σ |K_i|.
 
     Impossible boxes or obstacles, two of one name, and overlaps raise SceneError.
@@ -52,11 +50,6 @@ class Channel(Domain):
         return (*self._box.pieces, *self._obstacles.pieces)
 
     @property
-    def extent(self) -> tuple[FloatArray, FloatArray]:
-        """The corners of the box [length]."""
-        return self._box.extent
-
-    @property
     def volume(self) -> float:
         """Volume of the box without the obstacles [length^d]."""
         return self._box.volume - self._obstacles.volume
@@ -64,13 +57,6 @@ class Channel(Domain):
     def contains(self, points: FloatArray) -> BoolArray:
         """Which of ``points`` (N, d) are in the box and in no obstacle, (N,)."""
         return self._box.contains(points) & ~self._obstacles.hold(points)
-
-    def called(self, names: Collection[str]) -> Self:
-        """The same channel with faces called ``xmin`` … ``zmax`` where these are among the ``names``."""
-        other = copy(self)
-        other._box = self._box.called(names)
-        vars(other).pop("pieces", None)  # they were kept under other names
-        return other
 
     def cad_shape(self, unit: float) -> Any:
         """The box minus the obstacles, as a ``netgen.occ`` face or solid with lengths over ``unit``."""

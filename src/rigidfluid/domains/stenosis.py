@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from copy import copy
 from dataclasses import replace
 from functools import cached_property
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 from pydantic import Field
@@ -14,10 +12,10 @@ from pydantic import Field
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.mesher_unit import in_unit
 from rigidfluid.core.geometry.piece import Piece
-from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.domains.arc import Arc
 from rigidfluid.domains.box import Box, BoxOptions
+from rigidfluid.domains.in_box import InBox
 from rigidfluid.errors import SceneError
 
 
@@ -38,7 +36,7 @@ class StenosisOptions(PartOptions):
     )
 
 
-class Stenosis(Domain):
+class Stenosis(InBox):
     """A rectangle without two circular segments, which leave a throat of the given width.
 
     Raises SceneError in 3D, and if the bumps would not hold together, touch each other, or be longer than the channel.
@@ -68,11 +66,6 @@ class Stenosis(Domain):
         return (left, right, *flat, *bumps)
 
     @property
-    def extent(self) -> tuple[FloatArray, FloatArray]:
-        """The corners of the rectangle [length]."""
-        return self._box.extent
-
-    @property
     def volume(self) -> float:
         """length · width minus two circular segments [length²]."""
         return self._box.volume - sum(arc.area for arc in self._bumps.values())
@@ -83,13 +76,6 @@ class Stenosis(Domain):
         for arc in self._bumps.values():
             inside &= arc.signed_distance(points) > 0.0
         return inside
-
-    def called(self, names: Collection[str]) -> Self:
-        """The same channel with sides called ``xmin`` … ``ymax`` where these are among the ``names``."""
-        other = copy(self)
-        other._box = self._box.called(names)
-        vars(other).pop("pieces", None)  # they were kept under other names
-        return other
 
     def cad_shape(self, unit: float) -> Any:
         """The rectangle minus two disks, as a ``netgen.occ`` face with lengths over ``unit``."""

@@ -48,7 +48,7 @@ class BoundaryFactor(Action):
     def _surface(self, model: Model) -> str:
         """Name of the surface in the model; raises SceneError where there is none."""
         for piece in model.domain.pieces:
-            if self.name in (piece.name, piece.other_name):
+            if self.name in piece.all_names:
                 return piece.name
         allowed = f"a surface of the domain: {model.domain.names_in_words}"
         raise SceneError("boundary", repr(self.name), allowed, "Name another.")

@@ -29,7 +29,7 @@ def check_boundary_tables(tables: Sequence[BoundaryTable], domain: Domain, end: 
 
 def check_surface_names(tables: Sequence[BoundaryTable], domain: Domain) -> None:
     """Refuse, with SceneError, unknown names of surfaces."""
-    known = ("all", *domain.names, *(piece.other_name for piece in domain.pieces))
+    known = {"all", *(name for piece in domain.pieces for name in piece.all_names)}
     allowed = f"all, {domain.names_in_words}"
     raise_all(
         SceneError(f"boundary.{number}.on", repr(table.on), allowed, "Name a surface of the domain.")

@@ -25,10 +25,6 @@ class Place:
 def placed_tables(tables: Sequence[BoundaryTable], domain: Domain) -> Iterator[tuple[BoundaryTable, Place]]:
     """The last table for each piece of the boundary, in the order of surface numbers; a wall at rest without any."""
     for piece in domain.pieces:
-        on = [
-            (f"boundary.{i}", table)
-            for i, table in enumerate(tables)
-            if table.on in (piece.name, piece.other_name, "all")
-        ]
+        on = [(f"boundary.{i}", table) for i, table in enumerate(tables) if table.on in (*piece.all_names, "all")]
         at, table = on[-1] if on else ("boundary", _UNNAMED)
         yield table, Place(piece, domain.dimension, at)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from rigidfluid.core.case.expressions import VectorExpression
 from rigidfluid.core.fluid.material import Newtonian
 from rigidfluid.core.mesh.size_interface import SizeField
 from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.selected import Selected
-from rigidfluid.core.nested.part_options import build_part, read_options, refuse_unread
-from rigidfluid.core.scene.all_errors import all_told, raise_all
+from rigidfluid.core.nested.part_options import build_part, read_part
+from rigidfluid.core.scene.all_errors import raise_all
 from rigidfluid.core.scene.scene import FluidTable, MeshTable
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.errors import SceneError
@@ -57,12 +59,8 @@ def _size_fields(mesh: MeshTable | None, registry: Registry, dimension: int) -> 
 
 def _backend(table: FluidTable, registry: Registry) -> Selected[FluidBackend]:
     """Class of the backend that a scene names, and its options."""
-    common = type(table).model_fields
-    with all_told() as ask:
-        part = ask(registry.find, FLUID_BACKEND, table.backend)  # whoever reads results needs no more than its class
-        if part is None:
-            ask(refuse_unread, table.options, registry.installed(FLUID_BACKEND), common, "fluid")
-    return Selected(part, read_options(part, table.options, common, "fluid"))
+    look_up = partial(registry.find, FLUID_BACKEND, table.backend)  # whoever reads results needs no more than its class
+    return Selected(*read_part(look_up, FLUID_BACKEND, table.options, type(table), "fluid", registry))
 
 
 def _refuse_flow(table: FluidTable, backend: type[FluidBackend]) -> None:

@@ -143,7 +143,7 @@ def _names_used(scene: Scene) -> set[str]:
 
 def _with_names_of(domain: Domain, law: ContactLaw) -> ContactLaw:
     """The law with the domain's names of surfaces, where its table has other names of these."""
-    names = {piece.other_name: piece.name for piece in domain.pieces}
+    names = {name: piece.name for piece in domain.pieces for name in piece.all_names}
     return replace(law, names=tuple(names.get(name, name) for name in law.names))
 
 

@@ -187,7 +187,7 @@ def _searched(a: _Side, b: _Side) -> tuple[float, FloatArray]:
 
 
 def _pieces_meet(system: System, side: _Side, foot: FloatArray) -> bool:
-    """Whether the side is a wall, and its point ``foot`` (1, d) on the next piece of the boundary too."""
+    """Tell whether the side is a wall, and its point ``foot`` (1, d) on the next piece of the boundary too."""
     number = side.number - len(system.bodies)
     others = (piece.shape for i, piece in enumerate(system.domain.pieces) if i != number)
     return number >= 0 and any(abs(float(other.signed_distance(foot)[0])) <= side.off for other in others)

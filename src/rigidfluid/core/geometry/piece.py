@@ -24,3 +24,13 @@ class Piece:
     area: float
     coordinates: Callable[[FloatArray], FloatArray] | None = None
     other_name: str | None = None
+
+    @property
+    def all_names(self) -> tuple[str, ...]:
+        """Its name, and its other name if it has one."""
+        return (self.name,) if self.other_name is None else (self.name, self.other_name)
+
+    @property
+    def names_in_words(self) -> str:
+        """Its names, for a message."""
+        return " or ".join(self.all_names)

@@ -105,7 +105,7 @@ class Domain(SpatialPart):
     @property
     def names_in_words(self) -> str:
         """The names of the pieces, with the other names that they have, for a message."""
-        return ", ".join(f"{one.name} or {one.other_name}" if one.other_name else one.name for one in self.pieces)
+        return ", ".join(piece.names_in_words for piece in self.pieces)
 
     @property
     def size(self) -> FloatArray:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import partial
 from typing import Any, Protocol, TypeVar
 
 from pydantic import BaseModel
@@ -15,6 +16,7 @@ from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_
 from rigidfluid.errors import PluginError, SceneError
 from rigidfluid.registry import KINDS, Kind, Registry
 
+P = TypeVar("P", bound=Part)
 S = TypeVar("S", bound=SpatialPart)
 
 _PLACELESS = tuple(f"{kind.table}." for kind in KINDS)
@@ -56,19 +58,32 @@ def read_options(part: type[Part], options: Mapping[str, Any], common: Mapping[s
         return ask(own_options, part, {**meant, **options}, at)
 
 
+def read_part(
+    look_up: Callable[[], type[P]],
+    kind: Kind[P],
+    options: Mapping[str, Any],
+    table: type[BaseModel],
+    at: str,
+    registry: Registry,
+) -> tuple[type[P], PartOptions]:
+    """The part that ``look_up`` gives, and its options, among the keys of a ``table`` that are not its own; where the
+    part is missing, its error is raised together with those of keys that no part of the kind has."""
+    with all_told() as ask:
+        part = ask(look_up)
+        if part is None:
+            every = registry.installed(kind)
+            ask(refuse_unread, options, every, table.model_fields, at)
+    return part, read_options(part, options, table.model_fields, at)
+
+
 def build_part(kind: Kind[S], table: NamesPart, at: str, registry: Registry, dimension: int) -> S:
     """Part of a kind that a table names, at the place ``at`` of the scene (``body.0``, ``domain.obstacle.0``).
 
     Raises PluginError if it is missing, SceneError for an option that is unknown or refused.
     """
     assert isinstance(table, BaseModel)
-    options, common = dict(table.model_extra or {}), type(table).model_fields
-    every = registry.installed(kind)
-    with all_told() as ask:
-        part = ask(registry.get, kind, table.type, f"{at}.type")
-        if part is None:
-            ask(refuse_unread, options, every, common, at)
-    read = read_options(part, options, common, at)
+    look_up = partial(registry.get, kind, table.type, f"{at}.type")
+    part, read = read_part(look_up, kind, table.model_extra or {}, type(table), at, registry)
     with told_at(at):
         return part(read, dimension)
 

@@ -72,7 +72,7 @@ def join_folder(out: Path, product: Product, added: Product) -> None:
 
 
 def is_being_written(out: Path, product: Product) -> bool:
-    """Whether a process is writing the product to a folder now; False also where there are no locks."""
+    """Tell whether a process is writing the product to a folder now; False also where there are no locks."""
     if not (out / product.mark).is_file():
         return False
     with (out / product.mark).open("rb") as file:

@@ -29,7 +29,7 @@ class Ask:
     @property
     def subjects(self) -> list[str]:
         """Subjects of the errors, one by one."""
-        return [error.subject for error in _parts(self.errors)]
+        return [one.subject for error in self.errors for one in error.single_errors]
 
 
 @contextmanager
@@ -43,15 +43,9 @@ def all_told() -> Iterator[Ask]:
 def raise_all(errors: Iterable[RigidfluidError]) -> None:
     """Raise one error as it is, several as SceneErrors, those about the same once; nothing without any."""
     different: dict[str, RigidfluidError] = {}
-    for part in _parts(errors):
-        different.setdefault(part.subject, part)
+    for one in (one for error in errors for one in error.single_errors):
+        different.setdefault(one.subject, one)
     if len(different) == 1:
         raise next(iter(different.values())) from None
     if different:
         raise SceneErrors(different.values()) from None
-
-
-def _parts(errors: Iterable[RigidfluidError]) -> Iterator[RigidfluidError]:
-    """The errors, one by one."""
-    for error in errors:
-        yield from error.errors if isinstance(error, SceneErrors) else [error]

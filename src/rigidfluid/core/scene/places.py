@@ -24,7 +24,7 @@ def told_in_file(path: Path, assignments: Sequence[str] = ()) -> Iterator[None]:
     except (SceneError, PluginError) as error:
         if error.subject == str(path):
             raise  # it cannot be read
-        errors = error.errors if isinstance(error, SceneErrors) else (error,)
+        errors = error.single_errors
         lines = path.read_text(encoding="utf-8").splitlines()
         order = {id(one): _tell_place(one, path, lines, assignments) for one in errors}
         if isinstance(error, SceneErrors):
@@ -40,10 +40,10 @@ def told_where_set(path: Path, keys: Mapping[str, Sequence[str]]) -> Iterator[No
         yield
     except (SceneError, PluginError) as error:
         lines = path.read_text(encoding="utf-8").splitlines()
-        for one in error.errors if isinstance(error, SceneErrors) else [error]:
-            for table in keys:
-                if any(f"{one.subject}.".startswith(f"{key}.") for key in keys[table]):
-                    one.place = f"{path}:{line_of(f'{table}.{one.subject}', lines)}"
+        for one in error.single_errors:
+            table = next((table for table in keys if any(_is_within(one.subject, key) for key in keys[table])), None)
+            if table is not None:
+                one.place = f"{path}:{line_of(f'{table}.{one.subject}', lines)}"
         raise
 
 
@@ -67,7 +67,7 @@ def _tell_place(error: RigidfluidError, path: Path, lines: Sequence[str], assign
         return 0
     for assignment in reversed(assignments):
         key = assignment.partition("=")[0].strip()
-        if f"{error.subject}.".startswith(f"{key}."):
+        if _is_within(error.subject, key):
             error.place = f"--set {assignment}"
             return 0
     line = line_of(error.subject, lines)
@@ -77,6 +77,11 @@ def _tell_place(error: RigidfluidError, path: Path, lines: Sequence[str], assign
         return len(lines) + 1
     error.place = f"{path}:{line}"
     return line
+
+
+def _is_within(subject: str, key: str) -> bool:
+    """Tell whether a subject is a key or lies under it."""
+    return f"{subject}.".startswith(f"{key}.")
 
 
 def _has(lines: Sequence[str], keys: Sequence[str]) -> bool:

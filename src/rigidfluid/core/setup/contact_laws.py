@@ -127,8 +127,7 @@ def _check_names(model: Model, law: ContactLaw) -> None:
     bodies, walls = [body.name for body in model.all_bodies], [wall.name for wall in model.walls]
     for number, name in enumerate(law.names):
         if name not in (*bodies, *walls):
-            others = {piece.name: piece.other_name for piece in model.domain.pieces if piece.other_name}
-            known = [*bodies, *(f"{wall} or {others[wall]}" if wall in others else wall for wall in walls)]
+            known = [*bodies, *(piece.names_in_words for piece in model.domain.pieces if piece.name in walls)]
             raise _unknown(model, f"{law.field}.names.{number}", name, known)
     at_walls = any(name in walls for name in law.names)
     pair = len(law.names) == 2

@@ -73,7 +73,7 @@ def doubled(field: str, name: str) -> SceneError:
 
 def _doubled_names(placed: Arrangement) -> Iterator[SceneError]:
     names, wholes = [body.name for body in placed.all_bodies], [whole.name for whole in placed.mechanisms]
-    surfaces = [name for piece in placed.domain.pieces for name in (piece.name, piece.other_name) if name]
+    surfaces = [name for piece in placed.domain.pieces for name in piece.all_names]
     for name, count in Counter([*names, *wholes, *surfaces]).items():
         if count > 1:
             last = len(names) - 1 - names[::-1].index(name) if name in names else len(names)
