@@ -88,21 +88,15 @@ from rigidfluid.core.model.types import (
 from rigidfluid.core.nested.bodies import NestedBodyTable, build_shape, check_length, tables_by_name
 from rigidfluid.core.nested.placing import initial_pose
 from rigidfluid.core.nested.strokes import build_stroke
-from rigidfluid.core.scene.scene import (
-    MeshTable,
-    OutputTable,
-    Positive,
-    PrescribedTable,
-    RefineTable,
-    Scene,
-    SpringTable,
-    StrokeTable,
-    TimeFileTable,
-    TimeTable,
-    WakeTable,
-    WindowTable,
-)
+from rigidfluid.core.scene.body_tables import PrescribedTable
+from rigidfluid.core.scene.domain_table import WindowTable
+from rigidfluid.core.scene.joint_tables import SpringTable
+from rigidfluid.core.scene.mesh_tables import MeshTable, RefineTable, WakeTable
+from rigidfluid.core.scene.rows_over_time import StrokeTable, TimeFileTable
+from rigidfluid.core.scene.run_tables import OutputTable, TimeTable
+from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.scene.spelling import suggestion
+from rigidfluid.core.scene.table import Positive
 from rigidfluid.core.scene.vectors import Vector
 from rigidfluid.core.setup.contact_laws import ContactLaw
 from rigidfluid.core.setup.fluid import Fluid, NoFluid

@@ -12,7 +12,7 @@ from typing import Any
 from hypothesis import strategies as st
 
 from attacks.schema_values import SchemaValues, formulas, hostile_values, numbers
-from rigidfluid.core.scene.scene import read_toml
+from rigidfluid.core.scene.toml_file import read_toml
 
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
 BASES = (

@@ -8,7 +8,7 @@ from rigidfluid.checks.finding import Finding, figure, round_down
 from rigidfluid.core.mechanics.boundary_layer import CELLS_WANTED
 from rigidfluid.core.mesh.layer_cells import FEWEST_CELLS, thinnest_layer
 from rigidfluid.core.model.system import System
-from rigidfluid.core.scene.scene import MeshTable
+from rigidfluid.core.scene.mesh_tables import MeshTable
 
 QUESTION = "layer"
 

@@ -13,7 +13,7 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts
-from rigidfluid.core.scene.scene import MeshTable
+from rigidfluid.core.scene.mesh_tables import MeshTable
 
 QUESTION = "film"
 TWICE = 2.0

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from rigidfluid.checks.finding import Finding
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.scene.scene import BoundaryTable
+from rigidfluid.core.scene.boundary_tables import BoundaryTable
 
 QUESTION = "boundary"
 

@@ -17,7 +17,7 @@ from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts
-from rigidfluid.core.scene.scene import MeshTable
+from rigidfluid.core.scene.mesh_tables import MeshTable
 
 
 def start_findings(system: System, interaction: Interaction, start: Contacts) -> Iterator[Finding]:

@@ -16,7 +16,7 @@ from rigidfluid.core.contact.stokes_number import stokes_number, stokes_number_t
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.types import Contacts, Film
-from rigidfluid.core.scene.scene import MeshTable
+from rigidfluid.core.scene.mesh_tables import MeshTable
 
 QUESTION = "rebound"
 BALLS = 35.0

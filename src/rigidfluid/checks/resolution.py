@@ -11,7 +11,7 @@ from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.finding import Finding, figure, round_down
 from rigidfluid.checks.response import rest_gap
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.scene.scene import MeshTable
+from rigidfluid.core.scene.mesh_tables import MeshTable
 
 QUESTION = "cells"
 _MOST_REFINEMENTS = 20

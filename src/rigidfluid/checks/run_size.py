@@ -21,7 +21,7 @@ from rigidfluid.core.mesh.size_interface import SizeField, with_fields_at_rest
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Pose, SolverCost
 from rigidfluid.core.run.mesh_keys import sizes_of
-from rigidfluid.core.scene.scene import MeshTable
+from rigidfluid.core.scene.mesh_tables import MeshTable
 from rigidfluid.core.setup.model import Model
 
 _LATER_OVER_FIRST = 1.05

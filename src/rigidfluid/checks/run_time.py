@@ -9,7 +9,7 @@ from rigidfluid.checks.finding import Figures, Finding
 from rigidfluid.checks.machine_speed import machine_speed
 from rigidfluid.checks.run_size import RunSize
 from rigidfluid.core.model.system import System
-from rigidfluid.core.scene.scene import TimeTable
+from rigidfluid.core.scene.run_tables import TimeTable
 
 QUESTION = "time"
 

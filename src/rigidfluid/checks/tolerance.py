@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from rigidfluid.checks.finding import Finding, figure, round_down
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.initial_state import START_LEVEL
-from rigidfluid.core.scene.scene import TimeTable
+from rigidfluid.core.scene.run_tables import TimeTable
 
 QUESTION = "tolerance"
 

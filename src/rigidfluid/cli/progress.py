@@ -12,7 +12,7 @@ from rigidfluid.cli.console import make_console, tell_aside
 
 if TYPE_CHECKING:
     from rigidfluid.core.run.run import Progress
-    from rigidfluid.core.scene.scene import TimeTable
+    from rigidfluid.core.scene.run_tables import TimeTable
     from rigidfluid.post.progress import RunsProgress
 
 SECONDS_OF_A_LINE = 10.0

@@ -12,7 +12,7 @@ from rigidfluid.core.joints.constraints import Constraint, RotationDamper, SameP
 from rigidfluid.core.joints.joint import Joint
 from rigidfluid.core.joints.markers import MarkerPair
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.scene.scene import Positive
+from rigidfluid.core.scene.table import Positive
 from rigidfluid.errors import SceneError
 
 

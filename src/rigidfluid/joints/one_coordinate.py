@@ -19,7 +19,8 @@ from rigidfluid.core.joints.springs import Spring
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.nested.bodies import check_length
 from rigidfluid.core.nested.strokes import build_stroke
-from rigidfluid.core.scene.scene import Positive, StrokeTable
+from rigidfluid.core.scene.rows_over_time import StrokeTable
+from rigidfluid.core.scene.table import Positive
 from rigidfluid.core.scene.vectors import Vector
 from rigidfluid.errors import SceneError
 

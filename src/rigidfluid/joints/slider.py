@@ -11,7 +11,8 @@ from rigidfluid.core.joints.constraints import Constraint, OnAxis, SameOrientati
 from rigidfluid.core.joints.coordinates import Coordinate, Displacement
 from rigidfluid.core.joints.markers import MarkerPair, axes_along
 from rigidfluid.core.model.interfaces import PartOptions
-from rigidfluid.core.scene.scene import Positive, StrokeTable
+from rigidfluid.core.scene.rows_over_time import StrokeTable
+from rigidfluid.core.scene.table import Positive
 from rigidfluid.core.scene.vectors import Vector
 from rigidfluid.joints.one_coordinate import CoordinateOptions, OneCoordinate, unit_axis
 

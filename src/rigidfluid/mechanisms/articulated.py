@@ -13,7 +13,7 @@ from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.nested.bodies import check_length
 from rigidfluid.core.nested.placing import initial_pose
 from rigidfluid.core.nested.strokes import build_stroke
-from rigidfluid.core.scene.scene import StrokeTable
+from rigidfluid.core.scene.rows_over_time import StrokeTable
 from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.core.scene.vectors import Vector
 from rigidfluid.errors import SceneError

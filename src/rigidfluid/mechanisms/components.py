@@ -8,7 +8,7 @@ from pydantic import Field
 
 from rigidfluid.core.model.interfaces import Component
 from rigidfluid.core.nested.bodies import NestedBodyTable, build_shape, tables_by_name
-from rigidfluid.core.scene.scene import Positive
+from rigidfluid.core.scene.table import Positive
 from rigidfluid.errors import SceneError
 
 

@@ -11,7 +11,7 @@ from pydantic import Field
 from rigidfluid.core.mechanics.strokes import Stroke
 from rigidfluid.core.model.interfaces import Component, PartOptions
 from rigidfluid.core.model.types import Pose
-from rigidfluid.core.scene.scene import Positive
+from rigidfluid.core.scene.table import Positive
 from rigidfluid.errors import SceneError
 from rigidfluid.mechanisms.strokes import MovingComponents, StrokedMechanism, Translation
 from rigidfluid.registry import BODY, Registry

@@ -9,7 +9,7 @@ from rigidfluid.cli.progress import progress_bar, progress_lines
 from rigidfluid.core.output.history import History
 from rigidfluid.core.run.process import Launch
 from rigidfluid.core.run.run import Progress
-from rigidfluid.core.scene.scene import TimeTable
+from rigidfluid.core.scene.run_tables import TimeTable
 
 
 def told(seconds_of_a_step: float, first: int, last: int, capsys: pytest.CaptureFixture[str]) -> list[str]:

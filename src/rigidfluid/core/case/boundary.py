@@ -16,7 +16,7 @@ from rigidfluid.core.fluid.conditions import (
     no_pressure,
 )
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.scene.scene import (
+from rigidfluid.core.scene.boundary_tables import (
     BoundaryTable,
     PeriodicTable,
     PressureTable,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from rigidfluid.core.case.time_factor import rows_over_time
 from rigidfluid.core.nested.rows import check_rows
 from rigidfluid.core.scene.all_errors import all_told, raise_all
-from rigidfluid.core.scene.scene import BoundaryTable, VelocityTable, WallTable
+from rigidfluid.core.scene.boundary_tables import BoundaryTable, VelocityTable, WallTable
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:

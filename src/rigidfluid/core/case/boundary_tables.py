@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.scene.scene import BoundaryTable, WallTable
+from rigidfluid.core.scene.boundary_tables import BoundaryTable, WallTable
 
 _UNNAMED = WallTable(on="all", type="wall")
 """Table of pieces that a scene does not name."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
-    from rigidfluid.core.scene.scene import ContactTable, InteractionTable
+    from rigidfluid.core.scene.contact_tables import ContactTable, InteractionTable
 
 
 def check_contact_table(table: ContactTable, interactions: Sequence[InteractionTable]) -> None:

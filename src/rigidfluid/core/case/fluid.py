@@ -11,7 +11,8 @@ from rigidfluid.core.model.interfaces import FluidBackend
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.nested.part_options import build_part, read_part
 from rigidfluid.core.scene.all_errors import raise_all
-from rigidfluid.core.scene.scene import FluidTable, MeshTable
+from rigidfluid.core.scene.fluid_table import FluidTable
+from rigidfluid.core.scene.mesh_tables import MeshTable
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import FLUID_BACKEND, SIZE_FIELD, Registry

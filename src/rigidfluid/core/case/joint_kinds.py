@@ -8,7 +8,8 @@ from rigidfluid.core.joints.joint import Joint
 from rigidfluid.core.model.interfaces import PartOptions
 from rigidfluid.core.nested.part_options import told_at
 from rigidfluid.core.nested.strokes import read_stroke_rows
-from rigidfluid.core.scene.scene import JointTable, StrokeTable
+from rigidfluid.core.scene.joint_tables import JointTable
+from rigidfluid.core.scene.rows_over_time import StrokeTable
 from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_key
 from rigidfluid.core.setup.rigid_body import JoinedBodies
 from rigidfluid.registry import JOINT, Registry

@@ -9,7 +9,7 @@ from rigidfluid.core.model.interactions import Between
 from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.nested.part_options import own_options, refuse_unread
-from rigidfluid.core.scene.scene import ContactTable, InteractionTable
+from rigidfluid.core.scene.contact_tables import ContactTable, InteractionTable
 from rigidfluid.core.setup.contact_laws import ContactLaw, has_own_restitution
 from rigidfluid.registry import FORCE_LAW, Registry
 

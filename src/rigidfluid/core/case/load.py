@@ -18,9 +18,11 @@ from rigidfluid.core.geometry.value_types import describe
 from rigidfluid.core.model.memory import told_memory
 from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.earlier import tables_now
+from rigidfluid.core.scene.mesh_tables import AUTO
 from rigidfluid.core.scene.overrides import override
 from rigidfluid.core.scene.places import told_in_file
-from rigidfluid.core.scene.scene import AUTO, Scene, read_toml
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.scene.toml_file import read_toml
 from rigidfluid.core.scene.validation import read_table
 from rigidfluid.core.setup.made_bodies import check_made_bodies, told_by_numbers
 from rigidfluid.errors import ArgumentError

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from rigidfluid.core.case.table_values import values_of
 from rigidfluid.core.model.interfaces import Mechanism
 from rigidfluid.core.nested.part_options import build_part, told_at
-from rigidfluid.core.scene.scene import MechanismTable
+from rigidfluid.core.scene.body_tables import MechanismTable
 from rigidfluid.core.setup.rigid_body import PlacedMechanism
 from rigidfluid.registry import MECHANISM, Registry
 

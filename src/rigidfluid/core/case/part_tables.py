@@ -8,16 +8,12 @@ from typing import Any
 from rigidfluid.core.model.interfaces import Part
 from rigidfluid.core.nested.part_options import own_options, read_options, refuse_unread
 from rigidfluid.core.scene.all_errors import all_told
-from rigidfluid.core.scene.scene import (
-    BodyTable,
-    ContactTable,
-    DomainTable,
-    FluidTable,
-    InteractionTable,
-    JointTable,
-    MechanismTable,
-    SizeFieldTable,
-)
+from rigidfluid.core.scene.body_tables import BodyTable, MechanismTable
+from rigidfluid.core.scene.contact_tables import ContactTable, InteractionTable
+from rigidfluid.core.scene.domain_table import DomainTable
+from rigidfluid.core.scene.fluid_table import FluidTable
+from rigidfluid.core.scene.joint_tables import JointTable
+from rigidfluid.core.scene.mesh_tables import SizeFieldTable
 from rigidfluid.core.scene.validation import fields_by_key
 from rigidfluid.registry import (
     BODY,

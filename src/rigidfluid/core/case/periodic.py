@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rigidfluid.core.case.boundary_tables import placed_tables
-from rigidfluid.core.scene.scene import PeriodicTable
+from rigidfluid.core.scene.boundary_tables import PeriodicTable
 from rigidfluid.core.setup.opposite import is_opposite
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
     from rigidfluid.core.model.domain import Domain
-    from rigidfluid.core.scene.scene import BoundaryTable
+    from rigidfluid.core.scene.boundary_tables import BoundaryTable
 
 
 def periodic_pairs(tables: Sequence[BoundaryTable], domain: Domain) -> tuple[tuple[int, int], ...]:

@@ -22,7 +22,11 @@ from rigidfluid.core.model.interfaces import Body, Detector, Part
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.nested.part_options import build_part, own_options, read_options, refuse_unread
 from rigidfluid.core.scene.all_errors import all_told
-from rigidfluid.core.scene.scene import AUTO, BodyTable, ContactTable, DomainTable, Scene
+from rigidfluid.core.scene.body_tables import BodyTable
+from rigidfluid.core.scene.contact_tables import ContactTable
+from rigidfluid.core.scene.domain_table import DomainTable
+from rigidfluid.core.scene.mesh_tables import AUTO
+from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.contact_laws import ContactLaw
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.core.setup.made_bodies import check_made_bodies

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from rigidfluid.core.nested.rows import Rows, read_rows
-from rigidfluid.core.scene.scene import BoundaryTable, TimeFileTable, VaryingTable
+from rigidfluid.core.scene.boundary_tables import BoundaryTable, VaryingTable
+from rigidfluid.core.scene.rows_over_time import TimeFileTable
 
 
 def read_time_tables(conditions: Sequence[BoundaryTable]) -> tuple[BoundaryTable, ...]:

@@ -10,7 +10,8 @@ from pydantic import ConfigDict, Field
 from rigidfluid.core.model.interfaces import Body, PartOptions
 from rigidfluid.core.nested.part_options import build_part
 from rigidfluid.core.nested.placing import check_orientation
-from rigidfluid.core.scene.scene import PRINTABLE, InitialAngle, InitialOrientation
+from rigidfluid.core.scene.body_tables import InitialAngle, InitialOrientation
+from rigidfluid.core.scene.table import PRINTABLE
 from rigidfluid.core.scene.vectors import Vector
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import BODY, Registry

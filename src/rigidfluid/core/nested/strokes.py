@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rigidfluid.core.mechanics.strokes import Stroke
 from rigidfluid.core.nested.rows import Rows, check_rows, read_rows
-from rigidfluid.core.scene.scene import StrokeTable, TimeFileTable
+from rigidfluid.core.scene.rows_over_time import StrokeTable, TimeFileTable
 from rigidfluid.errors import SceneError
 
 _ROUNDING = 1e-9

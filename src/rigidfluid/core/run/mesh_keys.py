@@ -17,7 +17,7 @@ from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.system import System
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.stopwatch import Stopwatch
-from rigidfluid.core.scene.scene import MeshTable
+from rigidfluid.core.scene.mesh_tables import MeshTable
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
 
 

@@ -20,7 +20,7 @@ from rigidfluid.core.output.writer import checkpoint_name, earlier_parts, earlie
 from rigidfluid.core.run.checkpoint_fit import require_fit, require_fluid
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.scene.earlier import tables_now
-from rigidfluid.core.scene.scene import FluidTable
+from rigidfluid.core.scene.fluid_table import FluidTable
 from rigidfluid.core.setup.model import Model
 from rigidfluid.errors import OutputError, PluginError
 from rigidfluid.registry import FLUID_BACKEND, Registry

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rigidfluid.core.fluid.fluid_problem import FluidProblem
     from rigidfluid.core.model.interactions import Interaction
     from rigidfluid.core.model.system import System
-    from rigidfluid.core.scene.scene import MeshTable
+    from rigidfluid.core.scene.mesh_tables import MeshTable
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from rigidfluid.core.model.interfaces import Body, FluidBackend
 from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.model.types import Film
-from rigidfluid.core.scene.scene import MeshTable
+from rigidfluid.core.scene.mesh_tables import MeshTable
 from rigidfluid.core.setup.checked import AnyRow, NotNegative, Positive, checked
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import FLUID_BACKEND, Registry

@@ -17,7 +17,7 @@ from rigidfluid.errors import SceneError
 if TYPE_CHECKING:
     from rigidfluid.core.model.domain import Domain
     from rigidfluid.core.model.interfaces import Body, Detector
-    from rigidfluid.core.scene.scene import MeshTable
+    from rigidfluid.core.scene.mesh_tables import MeshTable
     from rigidfluid.core.setup.model import Model
     from rigidfluid.core.setup.placed_bodies import Arrangement
 

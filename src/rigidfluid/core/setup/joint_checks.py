@@ -12,7 +12,7 @@ from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
     from rigidfluid.core.geometry.arrays import FloatArray
-    from rigidfluid.core.scene.scene import SpringTable
+    from rigidfluid.core.scene.joint_tables import SpringTable
     from rigidfluid.core.setup.model import Model
     from rigidfluid.core.setup.rigid_body import JoinedBodies, RigidBody
 

@@ -10,7 +10,7 @@ import numpy as np
 from rigidfluid.core.joints.joint import PlacedJoint
 from rigidfluid.core.joints.linkage import JointLinkage
 from rigidfluid.core.model.joints import GroundLink, NoJoints
-from rigidfluid.core.scene.scene import SpringTable
+from rigidfluid.core.scene.joint_tables import SpringTable
 from rigidfluid.core.setup.quick_strokes import refuse_quick_drive
 from rigidfluid.errors import SceneError
 

@@ -10,7 +10,8 @@ from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
     from rigidfluid.core.model.domain import Domain
-    from rigidfluid.core.scene.scene import MeshTable, TimeTable
+    from rigidfluid.core.scene.mesh_tables import MeshTable
+    from rigidfluid.core.scene.run_tables import TimeTable
 
 MOST_CELLS = 10**9
 """Greatest number of cells, each a cube or square of the edge length: more are a slip of units, and a mesher would

@@ -18,7 +18,10 @@ from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.interfaces import Detector, Mechanism
 from rigidfluid.core.model.selected import Selected
-from rigidfluid.core.scene.scene import BoundaryTable, OutputTable, Scene, TimeTable, UnitsTable, WindowTable
+from rigidfluid.core.scene.boundary_tables import BoundaryTable
+from rigidfluid.core.scene.domain_table import WindowTable
+from rigidfluid.core.scene.run_tables import OutputTable, TimeTable
+from rigidfluid.core.scene.scene import Scene, UnitsTable
 from rigidfluid.core.setup.checked import AnyRow, NotNegative, Vector, checked
 from rigidfluid.core.setup.contact_laws import ContactLaw, told_apart
 from rigidfluid.core.setup.description import describe

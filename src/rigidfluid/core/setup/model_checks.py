@@ -26,7 +26,7 @@ from rigidfluid.errors import SceneError
 if TYPE_CHECKING:
     from rigidfluid.core.joints.joint import Joint
     from rigidfluid.core.model.interfaces import Body, Mechanism
-    from rigidfluid.core.scene.scene import MeshTable
+    from rigidfluid.core.scene.mesh_tables import MeshTable
     from rigidfluid.core.setup.model import Model
     from rigidfluid.core.setup.rigid_body import PlacedMechanism, RigidBody, Start
 

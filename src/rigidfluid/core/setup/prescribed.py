@@ -12,7 +12,7 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import rotate
 from rigidfluid.core.model.state import Prescription
 from rigidfluid.core.model.types import Pose
-from rigidfluid.core.scene.scene import PrescribedTable
+from rigidfluid.core.scene.body_tables import PrescribedTable
 
 if TYPE_CHECKING:
     from rigidfluid.core.setup.rigid_body import RigidBody

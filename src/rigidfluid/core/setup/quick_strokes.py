@@ -14,7 +14,7 @@ from rigidfluid.core.setup.along_strokes import corners
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
-    from rigidfluid.core.scene.scene import TimeTable
+    from rigidfluid.core.scene.run_tables import TimeTable
 
 _GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 _SAMPLES = 400

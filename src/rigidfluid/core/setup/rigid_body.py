@@ -10,7 +10,8 @@ from pydantic import Field
 from rigidfluid.core.geometry.arrays import BoolArray
 from rigidfluid.core.joints.joint import Joint
 from rigidfluid.core.model.interfaces import Body, Mechanism
-from rigidfluid.core.scene.scene import Freedom, PrescribedTable, SpringTable
+from rigidfluid.core.scene.body_tables import Freedom, PrescribedTable
+from rigidfluid.core.scene.joint_tables import SpringTable
 from rigidfluid.core.setup.checked import AngularVector, AnyRow, Name, Number, Positive, Vector, checked
 
 DIRECTIONS = {2: ("x", "y", "rotation"), 3: ("x", "y", "z", "rx", "ry", "rz")}

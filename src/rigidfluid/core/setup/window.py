@@ -15,7 +15,7 @@ from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
-    from rigidfluid.core.scene.scene import WindowTable
+    from rigidfluid.core.scene.domain_table import WindowTable
     from rigidfluid.core.setup.model import Model
 
 

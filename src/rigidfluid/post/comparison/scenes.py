@@ -8,8 +8,10 @@ from typing import Any
 
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.model.interfaces import FluidBackend
+from rigidfluid.core.scene.fluid_table import FluidTable
 from rigidfluid.core.scene.overrides import override
-from rigidfluid.core.scene.scene import FluidTable, Scene, read_toml
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.scene.toml_file import read_toml
 from rigidfluid.core.scene.validation import fields_by_key, unknown_key
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import FLUID_BACKEND, Registry

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.places import told_in_file
-from rigidfluid.core.scene.scene import read_toml
 from rigidfluid.core.scene.spelling import suggestion
+from rigidfluid.core.scene.toml_file import read_toml
 from rigidfluid.core.scene.validation import read_table
 from rigidfluid.errors import SceneError
 from rigidfluid.post.studies.model import MOST_RUNS, Study, StudyFile

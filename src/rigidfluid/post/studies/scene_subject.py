@@ -11,7 +11,8 @@ from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.run.run import simulate
 from rigidfluid.core.scene.overrides import assign
 from rigidfluid.core.scene.places import told_in_file, told_where_set
-from rigidfluid.core.scene.scene import Scene, read_toml
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.scene.toml_file import read_toml
 from rigidfluid.errors import RigidfluidError
 from rigidfluid.post.reports.units import Units
 from rigidfluid.post.studies.figure import check_figure, read_figure

@@ -5,7 +5,7 @@ import pytest
 
 from rigidfluid.core.mechanics.strokes import Stroke
 from rigidfluid.core.nested.strokes import build_stroke
-from rigidfluid.core.scene.scene import StrokeTable
+from rigidfluid.core.scene.rows_over_time import StrokeTable
 from rigidfluid.core.scene.validation import read_table
 from rigidfluid.errors import SceneError
 

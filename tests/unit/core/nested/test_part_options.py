@@ -19,7 +19,7 @@ from rigidfluid.api import (
     scene_from_dict,
 )
 from rigidfluid.core.nested.part_options import build_part, told_at
-from rigidfluid.core.scene.scene import BodyTable
+from rigidfluid.core.scene.body_tables import BodyTable
 from rigidfluid.registry import KINDS
 
 BALL = {"type": "sphere", "radius": 0.1, "position": [0.5, 0.5]}

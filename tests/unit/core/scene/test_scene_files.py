@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rigidfluid.core.scene.scene import read_toml
+from rigidfluid.core.scene.toml_file import read_toml
 
 
 def test_files_that_a_scene_names_are_sought_beside_it(tmp_path: Path) -> None:

@@ -47,7 +47,7 @@ from rigidfluid.api import (
     scene_from_dict,
 )
 from rigidfluid.checks import check
-from rigidfluid.core.scene.scene import SizeFieldTable
+from rigidfluid.core.scene.mesh_tables import SizeFieldTable
 from rigidfluid.post.reports.results import read_results
 
 TABLES: dict[str, Any] = {

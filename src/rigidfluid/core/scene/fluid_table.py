@@ -1,0 +1,34 @@
+"""Table of a scene's fluid."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from rigidfluid.core.scene.table import OpenTable, Positive
+from rigidfluid.core.scene.vectors import Formulas, Vector
+
+
+class FluidTable(OpenTable):
+    """The fluid, and the backend that computes it."""
+
+    backend: str = Field(default="scikit-fem", description="Name of a fluid backend; `dry` leaves the fluid out")
+    model: Literal["navier-stokes", "stokes"] = Field(
+        default="navier-stokes", description="Equations of the fluid; `stokes` leaves out its inertia"
+    )
+    density: Positive | None = Field(
+        default=None, description="Density of the fluid; needed by backends with a mesh, else 0 [mass/length^d]"
+    )
+    viscosity: Positive | None = Field(
+        default=None, description="Dynamic viscosity; needed by backends with a mesh [mass·length^(2-d)/time]"
+    )
+    gravity: Vector | None = Field(default=None, description="Gravity; zero if not given [length/time²]")
+    force: Formulas | None = Field(
+        default=None, description="Expressions of a force on the fluid alone; none if not given [force/volume]"
+    )
+    initial: Literal["rest", "steady"] | Formulas = Field(
+        default="rest",
+        description="Flow at the start: `rest`, except for what moving bodies set in motion, `steady` past bodies that "
+        "keep their velocities, or expressions of its velocity [length/time]",
+    )
