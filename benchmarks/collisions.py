@@ -19,7 +19,8 @@ from row_command import at_least, row_parser, show_rows
 from rigidfluid.core.mechanics.wrenches import contact_wrench
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.remesh import initial_mesh
-from rigidfluid.core.model.interfaces import Detector, PartOptions
+from rigidfluid.core.model.detector import Detector
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
 from rigidfluid.detectors.narrow_band import NarrowBandDetector, NarrowBandOptions
 from rigidfluid.detectors.sphere import SphereDetector

@@ -19,7 +19,7 @@ from scipy.spatial import cKDTree
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector

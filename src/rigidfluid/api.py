@@ -56,18 +56,14 @@ from rigidfluid.core.mechanics.strokes import Stroke
 from rigidfluid.core.mesh.flow import AtRest, Flow
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.size_interface import SizeField
+from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import (
-    Body,
-    Component,
-    Detector,
-    FluidBackend,
-    ForceLaw,
-    Mechanism,
-    Part,
-    PartOptions,
-)
+from rigidfluid.core.model.fluid_backend import FluidBackend
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.kinematics import Kinematics
+from rigidfluid.core.model.mechanism import Component, Mechanism
+from rigidfluid.core.model.part import Part, PartOptions
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import (

@@ -18,8 +18,12 @@ import pluggy
 if TYPE_CHECKING:
     from rigidfluid.core.joints.joint import Joint
     from rigidfluid.core.mesh.size_interface import SizeField
+    from rigidfluid.core.model.body import Body
+    from rigidfluid.core.model.detector import Detector
     from rigidfluid.core.model.domain import Domain
-    from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Mechanism
+    from rigidfluid.core.model.fluid_backend import FluidBackend
+    from rigidfluid.core.model.force_law import ForceLaw
+    from rigidfluid.core.model.mechanism import Mechanism
 
 hookspec = pluggy.HookspecMarker("rigidfluid")
 hookimpl = pluggy.HookimplMarker("rigidfluid")

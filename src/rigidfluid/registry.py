@@ -19,8 +19,13 @@ from rigidfluid.core.geometry.value_types import refuse_other_types
 from rigidfluid.core.geometry.wrong import Wrong
 from rigidfluid.core.joints.joint import Joint
 from rigidfluid.core.mesh.size_interface import SizeField
+from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw, Mechanism, Part
+from rigidfluid.core.model.fluid_backend import FluidBackend
+from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.mechanism import Mechanism
+from rigidfluid.core.model.part import Part
 from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.entry_points import load, origin
 from rigidfluid.error_text import error_text, shown

@@ -6,7 +6,7 @@ from facet_shapes import L_SHAPE, NOTCHED, NOTCHED_TRIANGLES, SQUARE, polygon, p
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 from rigidfluid.testing import BodyContract
 
 

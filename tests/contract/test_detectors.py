@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from rigidfluid.core.model.contacts import select
-from rigidfluid.core.model.interfaces import Detector, PartOptions
+from rigidfluid.core.model.detector import Detector
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector

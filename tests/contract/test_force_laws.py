@@ -5,8 +5,8 @@ from touching import unstacked
 from rigidfluid.core.contact.film_loss import FilmLoss
 from rigidfluid.core.contact.repulsion import Repulsion
 from rigidfluid.core.contact.restitution import Restitution
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.interactions import Interaction, SumOfLaws
-from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.types import Film
 from rigidfluid.forces.barrier import BarrierLaw
 from rigidfluid.forces.centre import CentreLaw

@@ -10,7 +10,7 @@ from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.mechanics.rigid import lab_inertia, moment
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.types import Pose, Twist
 
 

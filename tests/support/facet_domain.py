@@ -14,7 +14,7 @@ from rigidfluid.core.geometry.facets import Facets, area_vectors
 from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.mesh.meshing import EdgeLengths, netgen_mesh
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 
 TUBE_RADIUS, BEND, LEG = 1.0, 3.0, 4.0
 

@@ -14,7 +14,7 @@ from scipy.sparse import csc_array
 from rigidfluid.backends.scikit_fem import ScikitFem
 from rigidfluid.core.mesh.distribution import whole
 from rigidfluid.core.model.extension import FactorisedExtension
-from rigidfluid.core.model.interfaces import FluidBackend
+from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.model.ranks import MpiRanks
 from rigidfluid.core.model.types import Fields
 from rigidfluid.hookspecs import hookimpl

@@ -24,8 +24,9 @@ from rigidfluid.core.mesh.remesh import initial_mesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.surface_mesh import surface_mesh
 from rigidfluid.core.mesh.topology import check_mesh
+from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import Body, PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.core.setup.geometry_checks import surfaces_of
 from rigidfluid.domains.stenosis import Stenosis

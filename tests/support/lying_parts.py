@@ -16,7 +16,9 @@ from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.core.joints.constraints import Constraint, SamePoint
 from rigidfluid.core.mesh.size_interface import SizeField
 from rigidfluid.core.model.contacts import select
-from rigidfluid.core.model.interfaces import Component, ForceLaw, Mechanism, Part
+from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.mechanism import Component, Mechanism
+from rigidfluid.core.model.part import Part
 from rigidfluid.core.model.types import Pose, Twist
 from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.domains.box import Box

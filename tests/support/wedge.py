@@ -10,7 +10,7 @@ from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.geometry.surface import Plane
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 
 CORNERS = np.array([[0.0, 0.0], [2.0, 0.0], [0.0, 1.0]])
 

@@ -11,7 +11,7 @@ import pytest
 
 _LAW = """
     import numpy as np
-    from rigidfluid.core.model.interfaces import ForceLaw
+    from rigidfluid.core.model.force_law import ForceLaw
     from rigidfluid.hookspecs import hookimpl
 
     class Springy(ForceLaw):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from rigidfluid.backends.dolfinx import Dolfinx
 from rigidfluid.backends.dry import Dry
 from rigidfluid.backends.scikit_fem import ScikitFem
-from rigidfluid.core.model.interfaces import FluidBackend
+from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.hookspecs import hookimpl
 
 

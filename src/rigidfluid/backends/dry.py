@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
-from rigidfluid.core.model.interfaces import FluidBackend
+from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.model.types import Advance, Fields, FluidState, Mesh, Pose, Response, Step, Twist, Wrench
 
 

@@ -6,7 +6,7 @@ from rigidfluid.bodies.ellipsoid import Ellipsoid
 from rigidfluid.bodies.polygon import Polygon
 from rigidfluid.bodies.polyhedron import Polyhedron
 from rigidfluid.bodies.sphere import Sphere
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 from rigidfluid.hookspecs import hookimpl
 
 

@@ -12,7 +12,8 @@ from rigidfluid.bodies.ellipsoid_distance import closest_point
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.mesher_unit import in_unit
 from rigidfluid.core.geometry.unit_sphere import unit_sphere_points
-from rigidfluid.core.model.interfaces import Body, PartOptions
+from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.errors import SceneError
 
 

@@ -8,7 +8,8 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.facet_moments import facet_moments, unit_inertia
 from rigidfluid.core.geometry.facet_surface import FacetSurface
 from rigidfluid.core.geometry.facets import Facets, area_vectors, enclosed_volume
-from rigidfluid.core.model.interfaces import Body, PartOptions
+from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.errors import SceneError
 
 _LEAST_VOLUME = 1e-9

@@ -10,7 +10,7 @@ from pydantic import Field
 from rigidfluid.bodies.facet_body import FacetBody
 from rigidfluid.core.geometry.facets import Facets
 from rigidfluid.core.geometry.mesher_unit import in_unit
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.errors import SceneError
 
 Point = Annotated[tuple[float, ...], Field(min_length=2, max_length=2)]

@@ -13,7 +13,7 @@ from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.geometry.facets import Facets, area_vectors
 from rigidfluid.core.geometry.ridges import ridges_of
 from rigidfluid.core.geometry.stl_file import read_stl
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.errors import SceneError
 
 _THINNEST = 1e-9

@@ -11,7 +11,8 @@ from pydantic import Field
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.mesher_unit import in_unit
 from rigidfluid.core.geometry.unit_sphere import unit_sphere_points
-from rigidfluid.core.model.interfaces import Body, PartOptions
+from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.part import PartOptions
 
 
 class SphereOptions(PartOptions):

@@ -30,8 +30,8 @@ from rigidfluid.core.contact.work_to_stop import share_left
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.interactions import Interaction, acting_together
-from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts
 

@@ -12,7 +12,7 @@ from rigidfluid.core.joints.joint import PlacedJoint
 from rigidfluid.core.joints.joint_parts import joint_markers
 from rigidfluid.core.joints.markers import Markers
 from rigidfluid.core.mechanics.rigid import rotate, rotation_matrices
-from rigidfluid.core.model.interfaces import Detector
+from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.setup.joints import placed_joints

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rigidfluid.checks.finding import Finding, figure, round_down
-from rigidfluid.core.model.interfaces import Mechanism
+from rigidfluid.core.model.mechanism import Mechanism
 from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.system import System
 from rigidfluid.core.setup.along_strokes import corners, nearest_components, times_along

@@ -12,9 +12,9 @@ from rigidfluid.core.contact.loads import impact_energy
 from rigidfluid.core.contact.proximity import are_separate
 from rigidfluid.core.contact.representative_contacts import body_classes, free, wall_contacts
 from rigidfluid.core.mechanics.shapes import half_thickness, inscribed_radius
+from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interactions import Interaction
-from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts
 from rigidfluid.core.scene.mesh_tables import MeshTable

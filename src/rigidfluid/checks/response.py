@@ -9,7 +9,7 @@ import numpy as np
 
 from rigidfluid.core.contact.representative_contacts import contacts_at_gaps
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.types import Contacts
 
 _HALVINGS = 60

@@ -9,7 +9,8 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.facets import area_vectors
 from rigidfluid.core.mechanics.rigid import rotate, rotation_matrices
-from rigidfluid.core.model.interfaces import Body, Detector
+from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.setup.geometry_checks import surfaces_of

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rigidfluid.core.model.interfaces import Detector
+from rigidfluid.core.model.detector import Detector
 from rigidfluid.detectors.brute_force import BruteForceDetector
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
 from rigidfluid.detectors.facets import FacetDetector

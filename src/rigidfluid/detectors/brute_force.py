@@ -12,7 +12,9 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.geometry.wall import Wall, radius_of
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
+from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.detector import Detector
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
 
 Distance = Callable[[FloatArray], FloatArray]

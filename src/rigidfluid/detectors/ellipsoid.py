@@ -7,8 +7,10 @@ from typing import ClassVar
 
 from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.geometry.wall import Wall, is_round
+from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.contacts import in_order, select
-from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
+from rigidfluid.core.model.detector import Detector
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
 from rigidfluid.detectors.round_pieces import is_whole
 from rigidfluid.detectors.smooth_contacts import SmoothContacts

@@ -10,7 +10,7 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.geometry.facet_faces import unit
 from rigidfluid.core.geometry.facet_surface import FacetSurface, Nearby
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 from rigidfluid.detectors.facet_features import Features
 
 _BISECTIONS = 60

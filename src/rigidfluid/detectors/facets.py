@@ -17,8 +17,10 @@ from rigidfluid.core.geometry.surface import Surface
 from rigidfluid.core.geometry.wall import Wall, is_round, radius_of
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.mechanics.shapes import shape_key
+from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.contacts import in_order, select
-from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
+from rigidfluid.core.model.detector import Detector
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
 from rigidfluid.detectors.ellipsoid_on_facets import PlacedEllipsoid, ellipsoid_touches
 from rigidfluid.detectors.facet_features import Features, features_of

@@ -6,7 +6,7 @@ from typing import ClassVar, final
 
 from pydantic import Field
 
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.errors import SceneError
 from rigidfluid.marching.detector import MarchingDetector
 from rigidfluid.marching.options import MarchingOptions

@@ -12,8 +12,8 @@ from rigidfluid.core.geometry.surface import Plane
 from rigidfluid.core.geometry.unit_sphere import unit_sphere_points
 from rigidfluid.core.geometry.wall import Wall, centre_of, is_round, radius_of
 from rigidfluid.core.mechanics.rigid import rotation_matrices
+from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.contacts import select
-from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import Contacts, Pose
 from rigidfluid.detectors.ellipsoid_in_hollow import farthest_points
 from rigidfluid.errors import StepError

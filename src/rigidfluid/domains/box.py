@@ -16,7 +16,7 @@ from rigidfluid.core.geometry.mesher_unit import in_unit
 from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.geometry.surface import Plane
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.errors import SceneError
 
 NAMES = ("left", "right", "bottom", "top", "back", "front")

@@ -18,7 +18,7 @@ from rigidfluid.core.geometry.plane_of_facets import plane_around
 from rigidfluid.core.geometry.surface import Plane
 from rigidfluid.core.mesh.meshing import EdgeLengths, netgen_mesh, sides, surfaces_of
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.domains.closed_form import Flat, Form, components, form_of_edge, form_of_face
 from rigidfluid.domains.formed_surface import FormedSurface
 from rigidfluid.domains.naming import Labels, Part, order_surfaces, surface_names

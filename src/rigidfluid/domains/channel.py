@@ -9,7 +9,7 @@ from pydantic import Field
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.piece import Piece
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.nested.bodies import NestedBodyTable
 from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.domains.in_box import InBox

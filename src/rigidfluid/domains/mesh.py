@@ -14,7 +14,7 @@ from rigidfluid.core.geometry.facet_surface import FacetSurface
 from rigidfluid.core.geometry.facets import Facets, area_vectors, enclosed_volume, place
 from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.domains.boundary_of_mesh import SAME, boundary_of
 from rigidfluid.domains.mesh_file import FIELD, read_mesh
 from rigidfluid.domains.naming import Labels, order_surfaces, surface_names

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.forces.barrier import BarrierLaw
 from rigidfluid.forces.centre import CentreLaw
 from rigidfluid.forces.contact import ContactPointLaw

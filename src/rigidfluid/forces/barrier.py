@@ -8,7 +8,7 @@ import numpy as np
 
 from rigidfluid.core.contact.repulsion import Repulsion, RepulsionOptions
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts
 from rigidfluid.errors import StepRejected
 

@@ -8,7 +8,8 @@ import numpy as np
 from pydantic import Field
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.model.interfaces import ForceLaw, PartOptions
+from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Loads, Motion
 from rigidfluid.errors import SceneError
 

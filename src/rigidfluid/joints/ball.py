@@ -11,7 +11,7 @@ from pydantic import Field
 from rigidfluid.core.joints.constraints import Constraint, RotationDamper, SamePoint
 from rigidfluid.core.joints.joint import Joint
 from rigidfluid.core.joints.markers import MarkerPair
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.scene.table import Positive
 from rigidfluid.errors import SceneError
 

@@ -11,7 +11,7 @@ from pydantic import Field
 from rigidfluid.core.joints.constraints import Constraint, SameAxis, SamePoint
 from rigidfluid.core.joints.coordinates import Angle, Coordinate
 from rigidfluid.core.joints.markers import MarkerPair, axes_along
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.scene.rows_over_time import StrokeTable
 from rigidfluid.core.scene.table import Positive
 from rigidfluid.core.scene.vectors import Vector

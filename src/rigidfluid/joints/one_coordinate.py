@@ -16,7 +16,7 @@ from rigidfluid.core.joints.coordinates import Coordinate
 from rigidfluid.core.joints.joint import Joint
 from rigidfluid.core.joints.markers import MarkerPair
 from rigidfluid.core.joints.springs import Spring
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.nested.bodies import check_length
 from rigidfluid.core.nested.strokes import build_stroke
 from rigidfluid.core.scene.rows_over_time import StrokeTable

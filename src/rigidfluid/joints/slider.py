@@ -10,7 +10,7 @@ from pydantic import Field
 from rigidfluid.core.joints.constraints import Constraint, OnAxis, SameOrientation
 from rigidfluid.core.joints.coordinates import Coordinate, Displacement
 from rigidfluid.core.joints.markers import MarkerPair, axes_along
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.scene.rows_over_time import StrokeTable
 from rigidfluid.core.scene.table import Positive
 from rigidfluid.core.scene.vectors import Vector

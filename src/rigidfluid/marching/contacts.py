@@ -13,7 +13,7 @@ import numpy as np
 from rigidfluid.core.contact.broad_phase import near_pairs, near_walls
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.wall import Wall, radius_of, wall_radii
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
 from rigidfluid.errors import SceneError
 from rigidfluid.marching.exact import measure, put_back, reset

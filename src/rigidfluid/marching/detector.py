@@ -7,7 +7,9 @@ from typing import ClassVar, final
 
 from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.geometry.wall import Wall
-from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
+from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.detector import Detector
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
 from rigidfluid.marching.options import MarchingOptions
 

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 
 
 class MarchingOptions(PartOptions):

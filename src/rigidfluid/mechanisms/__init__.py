@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rigidfluid.core.model.interfaces import Mechanism
+from rigidfluid.core.model.mechanism import Mechanism
 from rigidfluid.hookspecs import hookimpl
 from rigidfluid.mechanisms.articulated import Articulated
 from rigidfluid.mechanisms.three_sphere_swimmer import ThreeSphereSwimmer

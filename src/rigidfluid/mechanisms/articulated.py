@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.nested.bodies import check_length
 from rigidfluid.core.nested.placing import initial_pose
 from rigidfluid.core.nested.strokes import build_stroke

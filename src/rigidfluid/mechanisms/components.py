@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from pydantic import Field
 
-from rigidfluid.core.model.interfaces import Component
+from rigidfluid.core.model.mechanism import Component
 from rigidfluid.core.nested.bodies import NestedBodyTable, build_shape, tables_by_name
 from rigidfluid.core.scene.table import Positive
 from rigidfluid.errors import SceneError

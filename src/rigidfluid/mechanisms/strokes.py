@@ -13,7 +13,7 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.mechanics.rigid import cross, rotate, rotation_matrices
 from rigidfluid.core.mechanics.strokes import Stroke
-from rigidfluid.core.model.interfaces import Component, Mechanism
+from rigidfluid.core.model.mechanism import Component, Mechanism
 from rigidfluid.core.model.types import Pose, Twist
 
 _ROUNDING = 1e-9

@@ -9,7 +9,8 @@ import numpy as np
 from pydantic import Field
 
 from rigidfluid.core.mechanics.strokes import Stroke
-from rigidfluid.core.model.interfaces import Component, PartOptions
+from rigidfluid.core.model.mechanism import Component
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.scene.table import Positive
 from rigidfluid.errors import SceneError

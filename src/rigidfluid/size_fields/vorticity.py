@@ -11,7 +11,7 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mesh.flow import Flow
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.size_interface import SizeField
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.scene.table import Positive
 
 

@@ -12,7 +12,8 @@ from pydantic import Field
 
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
-from rigidfluid.core.model.interfaces import FluidBackend, PartOptions
+from rigidfluid.core.model.fluid_backend import FluidBackend
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Advance, Fields, FluidState, Mesh, Pose, Response, Step, Twist
 from rigidfluid.taylor_hood.coupled import CoupledMatrix
 from rigidfluid.taylor_hood.discretisation import Discretisation

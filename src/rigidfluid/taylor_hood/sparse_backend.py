@@ -10,7 +10,7 @@ from pydantic import Field
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.geometry.answers import refuse_other_rows
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import FluidState, Mesh, SolverCost
 from rigidfluid.taylor_hood.backend import TaylorHoodBackend, TaylorHoodOptions
 from rigidfluid.taylor_hood.numbering import Numbering

@@ -17,7 +17,7 @@ from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.mechanics.frames import distance_to_body, to_world
 from rigidfluid.core.mechanics.rigid import rotate, rotation_matrices
 from rigidfluid.core.mesh.size_field import Sizes
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.core.setup.geometry_checks import surfaces_of
 from rigidfluid.domains.box import Box, BoxOptions

@@ -10,7 +10,7 @@ import pytest
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.facet_moments import facet_moments, unit_inertia
 from rigidfluid.core.geometry.facets import area_vectors
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 
 
 class BodyContract:

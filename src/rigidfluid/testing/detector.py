@@ -13,7 +13,7 @@ import pytest
 from rigidfluid.core.contact.detection import detection_by
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.piece import Piece
-from rigidfluid.core.model.interfaces import Detector
+from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.types import Contacts
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 from rigidfluid.testing.arrangement import (

@@ -12,7 +12,7 @@ import pytest
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.mechanics.rigid import moment
 from rigidfluid.core.mechanics.wrenches import contact_wrench
-from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.types import Contacts, Motion, Pose
 from rigidfluid.errors import StepRejected
 

@@ -16,7 +16,7 @@ from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.mechanics.rigid import lab_inertia, rotate, rotation_between, turned
 from rigidfluid.core.mechanics.time_scheme import momentum
 from rigidfluid.core.mechanics.wrenches import flat
-from rigidfluid.core.model.interfaces import Mechanism
+from rigidfluid.core.model.mechanism import Mechanism
 from rigidfluid.core.model.types import Pose, Twist, Wrench
 from rigidfluid.core.scene.validation import table_of
 from rigidfluid.registry import BODY, Registry

@@ -16,7 +16,7 @@ from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.mechanics.rigid import lab_inertia, rotation_matrices
 from rigidfluid.core.mechanics.time_scheme import derivative_weights, extrapolation_weights, newton_euler, predict_pose
 from rigidfluid.core.mechanics.wrenches import contact_wrench
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Pose, Step, Twist, Wrench
 from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.forces.centre import CentreLaw, CentreOptions

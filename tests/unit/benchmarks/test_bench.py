@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from benchmark_scripts import benchmark
 
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.detectors.sphere import SphereDetector
 
 

@@ -7,7 +7,7 @@ from rigidfluid.bodies.sphere import Sphere, SphereOptions
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.surface import Plane
 from rigidfluid.core.geometry.wall import Wall
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.types import Contacts, Pose
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 

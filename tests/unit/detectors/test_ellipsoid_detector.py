@@ -16,7 +16,8 @@ from rigidfluid.core.geometry.surface import Plane
 from rigidfluid.core.geometry.unit_sphere import unit_sphere_points
 from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.mechanics.rigid import moment, rotate, rotation_matrices
-from rigidfluid.core.model.interfaces import Body, PartOptions
+from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Pose
 from rigidfluid.core.setup.geometry_checks import surfaces_of
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
@@ -336,7 +337,7 @@ def test_one_body_and_its_walls_need_no_compiler() -> None:
     code = """
 import sys
 import numpy as np
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.geometry.surface import Plane
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.geometry.wall import Wall

@@ -17,7 +17,8 @@ from rigidfluid.core.geometry.facets import Facets
 from rigidfluid.core.geometry.surface import Plane
 from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.model.interfaces import Body, PartOptions
+from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Pose
 from rigidfluid.detectors.facets import FacetDetector
 from rigidfluid.detectors.sphere import SphereDetector

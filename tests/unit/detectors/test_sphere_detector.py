@@ -6,7 +6,7 @@ from rigidfluid.bodies.sphere import Sphere, SphereOptions
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.surface import Plane
 from rigidfluid.core.geometry.wall import Wall
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Pose
 from rigidfluid.detectors.sphere import SphereDetector
 from rigidfluid.errors import SceneError

@@ -28,7 +28,8 @@ from rigidfluid.core.mesh.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_mesh
 from rigidfluid.core.model.contact_results import refuse_odd
-from rigidfluid.core.model.interfaces import Detector, PartOptions
+from rigidfluid.core.model.detector import Detector
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Mesh, Motion, Pose
 from rigidfluid.core.run.run import run
 from rigidfluid.core.run.simulation import Simulation

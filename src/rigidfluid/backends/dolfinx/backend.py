@@ -10,7 +10,7 @@ from rigidfluid.backends.dolfinx.options import DolfinxOptions
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.geometry.arrays import BoolArray
 from rigidfluid.core.model.extension import Extension
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.taylor_hood.backend import TaylorHoodBackend
 from rigidfluid.taylor_hood.discretisation import Discretisation

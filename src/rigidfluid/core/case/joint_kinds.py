@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rigidfluid.core.joints.joint import Joint
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.nested.part_options import told_at
 from rigidfluid.core.nested.strokes import read_stroke_rows
 from rigidfluid.core.scene.joint_tables import JointTable

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rigidfluid.core.case.table_values import values_of
-from rigidfluid.core.model.interfaces import Mechanism
+from rigidfluid.core.model.mechanism import Mechanism
 from rigidfluid.core.nested.part_options import build_part, told_at
 from rigidfluid.core.scene.body_tables import MechanismTable
 from rigidfluid.core.setup.rigid_body import PlacedMechanism

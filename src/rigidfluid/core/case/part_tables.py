@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from rigidfluid.core.model.interfaces import Part
+from rigidfluid.core.model.part import Part
 from rigidfluid.core.nested.part_options import own_options, read_options, refuse_unread
 from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.body_tables import BodyTable, MechanismTable

@@ -17,8 +17,10 @@ from rigidfluid.core.case.mechanisms import placed_mechanisms
 from rigidfluid.core.case.periodic import periodic_pairs
 from rigidfluid.core.case.table_values import values_of
 from rigidfluid.core.contact.detector_choice import choose_detector
+from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import Body, Detector, Part
+from rigidfluid.core.model.part import Part
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.nested.part_options import build_part, own_options, read_options, refuse_unread
 from rigidfluid.core.scene.all_errors import all_told

@@ -11,7 +11,7 @@ from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing, power
 from rigidfluid.core.model.contacts import middle
 from rigidfluid.core.model.dynamics import BodyDynamics
-from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, Wrench
 

@@ -9,7 +9,7 @@ import numpy as np
 from scipy import sparse
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.types import Contacts
 from rigidfluid.errors import StepRejected
 

@@ -10,8 +10,9 @@ import numpy as np
 
 from rigidfluid.core.contact.round_contacts import on_round_shapes
 from rigidfluid.core.model.detection import Detection, FollowedContacts, Sight
+from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.dynamics import BodyDynamics
-from rigidfluid.core.model.interfaces import Detector, ForceLaw
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
 

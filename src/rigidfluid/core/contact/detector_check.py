@@ -14,7 +14,7 @@ from rigidfluid.core.geometry.guarded import part_error
 from rigidfluid.core.geometry.surface import Surface
 from rigidfluid.core.geometry.wrong import Wrong
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
 

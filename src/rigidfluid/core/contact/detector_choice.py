@@ -7,7 +7,8 @@ from contextlib import suppress
 
 from rigidfluid.core.contact.detection import detection_by
 from rigidfluid.core.geometry.piece import Piece
-from rigidfluid.core.model.interfaces import Body, Detector
+from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.detector import Detector
 from rigidfluid.errors import PluginError
 from rigidfluid.registry import DETECTOR, Registry
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.types import Contacts, Pose
 
 

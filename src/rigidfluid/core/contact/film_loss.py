@@ -10,7 +10,7 @@ import numpy as np
 
 from rigidfluid.core.contact.stokes_number import stokes_number, stokes_number_taken
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.types import Contacts, Film, Loads
 
 _PARTS = 12

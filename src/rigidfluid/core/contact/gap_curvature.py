@@ -10,7 +10,7 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.geometry.wall import Wall, wall_radii
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.types import Contacts, Pose
 
 

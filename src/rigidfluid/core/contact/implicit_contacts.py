@@ -16,7 +16,7 @@ from rigidfluid.core.geometry.wall import WallVelocities
 from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing
 from rigidfluid.core.model.contacts import middle as centre
 from rigidfluid.core.model.dynamics import BodyDynamics
-from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.types import Contacts, Motion, Pose, Twist, Wrench
 from rigidfluid.errors import StepRejected

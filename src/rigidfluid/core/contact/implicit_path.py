@@ -14,7 +14,7 @@ from rigidfluid.core.contact.substep_path import fly_freely, spring_parts
 from rigidfluid.core.mechanics.wrenches import nothing, power
 from rigidfluid.core.model.detection import FollowedContacts
 from rigidfluid.core.model.dynamics import BodyDynamics
-from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, Pose, Twist, Wrench
 from rigidfluid.errors import StepRejected

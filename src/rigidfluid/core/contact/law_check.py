@@ -12,8 +12,8 @@ from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.guarded import part_error
 from rigidfluid.core.geometry.wrong import Wrong
 from rigidfluid.core.model.contacts import joined, select
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.interactions import Interaction
-from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, Motion
 

@@ -14,7 +14,7 @@ from rigidfluid.core.mechanics.motions import body_accelerations
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.detection import Sight
 from rigidfluid.core.model.dynamics import BodyDynamics
-from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, Pose

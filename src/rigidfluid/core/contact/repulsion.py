@@ -12,7 +12,8 @@ from pydantic import Field, ValidationError, ValidatorFunctionWrapHandler, WrapV
 from rigidfluid.core.contact.loads import require_loads
 from rigidfluid.core.contact.work_to_stop import work_to_stop
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.model.interfaces import ForceLaw, PartOptions
+from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Loads
 
 AUTO: Literal["auto"] = "auto"

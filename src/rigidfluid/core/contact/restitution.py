@@ -10,7 +10,7 @@ from rigidfluid.core.contact.film_loss import FilmLoss
 from rigidfluid.core.contact.hunt_crossley import LEAST, Hardening, excess, excess_by_speed, hardening
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.contacts import select
-from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.types import Contacts, Motion
 from rigidfluid.errors import SceneError
 

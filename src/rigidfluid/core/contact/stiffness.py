@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.types import Contacts
 
 SAMPLES = 8

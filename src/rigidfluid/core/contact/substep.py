@@ -14,7 +14,7 @@ from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.wall import WallVelocities
 from rigidfluid.core.model.contacts import middle, select
 from rigidfluid.core.model.dynamics import BodyDynamics
-from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.part_results import refuse_no_number
 from rigidfluid.core.model.types import Contacts, Motion, Pose, Twist
 

@@ -15,7 +15,7 @@ from rigidfluid.core.contact.substep import Plan, Reach, plan
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.model.detection import Sight
 from rigidfluid.core.model.dynamics import BodyDynamics
-from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts
 from rigidfluid.errors import StepRejected

@@ -8,7 +8,7 @@ from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
 from rigidfluid.core.contact.proximity import detect, interacting, travel
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.model.contacts import joined, select
-from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, Pose
 from rigidfluid.errors import StepRejected

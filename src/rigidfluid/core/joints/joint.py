@@ -16,7 +16,7 @@ from rigidfluid.core.joints.constraints import Constraint
 from rigidfluid.core.joints.coordinates import Coordinate, Drive
 from rigidfluid.core.joints.markers import MarkerPair
 from rigidfluid.core.joints.springs import Spring
-from rigidfluid.core.model.interfaces import SpatialPart
+from rigidfluid.core.model.part import SpatialPart
 
 
 class Joint(SpatialPart):

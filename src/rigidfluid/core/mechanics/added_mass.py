@@ -8,7 +8,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.facet_moments import facet_moments
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 
 
 def added_mass(body: Body) -> FloatArray:

@@ -8,7 +8,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.shapes import equal_volume_radius, shape_key
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 
 CELLS_WANTED = 2.0
 """Cells across a layer with which forces and torques change by about a tenth at a new mesh."""

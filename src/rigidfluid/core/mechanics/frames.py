@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.types import Pose
 
 

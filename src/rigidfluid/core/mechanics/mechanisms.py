@@ -17,7 +17,7 @@ from rigidfluid.core.mechanics.kinematics import CarriedKinematics, carried_sum,
 from rigidfluid.core.mechanics.rigid import compose, lab_inertia, moment, rotation_matrices, turned
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.dynamics import MotionDynamics
-from rigidfluid.core.model.interfaces import Mechanism
+from rigidfluid.core.model.mechanism import Mechanism
 from rigidfluid.core.model.state import MotionState
 from rigidfluid.core.model.types import Pose, Twist, Wrench
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 
 ELLIPSOIDS = 5.0
 """Bound of the rotational factor of homogeneous ellipsoids, however slender."""

@@ -9,7 +9,7 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.frames import to_world
 from rigidfluid.core.mechanics.rotational_factor import largest_rotational_factor, rotational_factor_at, surface_points
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.types import Pose
 

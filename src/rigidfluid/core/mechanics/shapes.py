@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 
 _SAMPLES = {2: 400, 3: 1600}
 """Number of surface points, by dimension, at which inscribed balls touch."""

@@ -12,7 +12,7 @@ from rigidfluid.core.geometry.curl import curl
 from rigidfluid.core.mesh.distribution import whole
 from rigidfluid.core.mesh.location import CellFinder
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
-from rigidfluid.core.model.interfaces import FluidBackend
+from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.model.types import FluidState, Mesh, Twist
 
 

@@ -10,8 +10,8 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.mechanics.frames import distance_to_body, to_body_frame, to_world
+from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Pose
 

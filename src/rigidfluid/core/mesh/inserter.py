@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import Body
 from rigidfluid.errors import MeshError
 
 MESHER_TIMEOUT = 600.0

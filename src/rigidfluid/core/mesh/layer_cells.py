@@ -11,7 +11,7 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.boundary_layer import boundary_layers
 from rigidfluid.core.mechanics.shapes import shape_key
 from rigidfluid.core.mesh.made_size import facet_edge
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 
 FEWEST_CELLS = 0.95
 """Fewest cells across a layer: with fewer a torque was eight times as large, or of the other sign, for some twenty

@@ -15,7 +15,7 @@ from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.refine_surface import LONGEST
 from rigidfluid.core.mesh.regions import CurvedWall
 from rigidfluid.core.mesh.size_field import Sizes, reach_of_bodies, size_between
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 
 _MOST_GROWTH = 0.4
 """Growth of the size with the distance that MMG's ratio of 1.3 between neighbouring edges comes to, fitted."""

@@ -17,8 +17,8 @@ from rigidfluid.core.mesh.on_surfaces import put_on_surfaces
 from rigidfluid.core.mesh.periodic import identify, with_exact_images
 from rigidfluid.core.mesh.size_field import Sizes
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, orient
+from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.errors import MeshError, PluginError
 

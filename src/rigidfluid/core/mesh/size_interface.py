@@ -14,7 +14,7 @@ from rigidfluid.core.geometry.guarded import gives
 from rigidfluid.core.mesh.flow import AtRest, Flow
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.size_field import Sizes
-from rigidfluid.core.model.interfaces import SpatialPart
+from rigidfluid.core.model.part import SpatialPart
 
 
 class SizeField(SpatialPart):

@@ -33,8 +33,8 @@ from rigidfluid.core.mesh.refine_surface import (
 )
 from rigidfluid.core.mesh.size_field import Sizes, wanted_size
 from rigidfluid.core.mesh.topology import REMEDY
+from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import Body
 from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.errors import MeshError
 

@@ -11,7 +11,8 @@ from rigidfluid.core.mesh.flow import Flow
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.regions import RefinedCapsule
 from rigidfluid.core.mesh.size_interface import SizeField
-from rigidfluid.core.model.interfaces import Body, PartOptions
+from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Pose, Twist
 
 

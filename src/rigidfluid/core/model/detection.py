@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
 from rigidfluid.core.model.dynamics import BodyDynamics
-from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
 
 

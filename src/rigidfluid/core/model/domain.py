@@ -15,7 +15,7 @@ from rigidfluid.core.geometry.facets import Facets
 from rigidfluid.core.geometry.guarded import gives
 from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.model import part_answers as parts
-from rigidfluid.core.model.interfaces import SpatialPart
+from rigidfluid.core.model.part import SpatialPart
 
 
 class Domain(SpatialPart):

@@ -10,7 +10,8 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.model.contacts import select
-from rigidfluid.core.model.interfaces import ForceLaw, PartOptions
+from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Motion
 
 Between = Literal["all", "walls", "pairs"]

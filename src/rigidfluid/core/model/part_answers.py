@@ -77,7 +77,8 @@ def truths(answer: Any, part: Any, points: Any) -> None:
 
 def components(answer: Any, part: Any) -> None:
     """Refuse what are no components of a mechanism."""
-    from rigidfluid.core.model.interfaces import Body, Component
+    from rigidfluid.core.model.body import Body
+    from rigidfluid.core.model.mechanism import Component
 
     several(lambda: Component, least=1)(answer)
     for one in answer:

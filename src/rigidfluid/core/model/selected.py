@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from rigidfluid.core.model.interfaces import Part, PartOptions
+from rigidfluid.core.model.part import Part, PartOptions
 
 P = TypeVar("P", bound=Part)
 

@@ -11,10 +11,13 @@ import numpy as np
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.geometry.wall import Wall, WallVelocities
+from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.detection import Detection
+from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.model.fluid_backend import FluidBackend
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.interactions import Interaction
-from rigidfluid.core.model.interfaces import Body, Detector, FluidBackend, ForceLaw
 from rigidfluid.core.model.joints import Joints, NoJoints
 from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.types import Contacts, Loads, Pose, Twist

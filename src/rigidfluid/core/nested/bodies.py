@@ -7,7 +7,8 @@ from typing import TypeVar
 
 from pydantic import ConfigDict, Field
 
-from rigidfluid.core.model.interfaces import Body, PartOptions
+from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.nested.part_options import build_part
 from rigidfluid.core.nested.placing import check_orientation
 from rigidfluid.core.scene.body_tables import InitialAngle, InitialOrientation

@@ -9,7 +9,7 @@ from typing import Any, Protocol, TypeVar
 
 from pydantic import BaseModel
 
-from rigidfluid.core.model.interfaces import Part, PartOptions, SpatialPart
+from rigidfluid.core.model.part import Part, PartOptions, SpatialPart
 from rigidfluid.core.scene.all_errors import all_told, raise_all
 from rigidfluid.core.scene.spelling import nearest
 from rigidfluid.core.scene.validation import fields_by_key, read_table, unknown_key

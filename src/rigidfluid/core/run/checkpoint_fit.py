@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from rigidfluid.core.geometry.value_types import describe
-from rigidfluid.core.model.interfaces import FluidBackend
+from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.output.checkpoint import Checkpoint, misfit_error

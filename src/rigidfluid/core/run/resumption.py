@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from rigidfluid.core.mesh.distribution import joined, partition, parts_of, shared
-from rigidfluid.core.model.interfaces import FluidBackend
+from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Mesh

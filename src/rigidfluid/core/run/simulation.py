@@ -16,7 +16,7 @@ from rigidfluid.core.coupling.contact_forces import contact_forces
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.value_types import describe
 from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_of
-from rigidfluid.core.model.interfaces import FluidBackend
+from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.model.memory import told_memory
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System

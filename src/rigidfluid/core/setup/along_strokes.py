@@ -10,7 +10,8 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.joints.coordinates import Drive
-from rigidfluid.core.model.interfaces import Detector, Mechanism
+from rigidfluid.core.model.detector import Detector
+from rigidfluid.core.model.mechanism import Mechanism
 from rigidfluid.core.model.motions import Motions
 from rigidfluid.errors import SceneError
 

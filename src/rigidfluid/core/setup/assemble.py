@@ -14,8 +14,10 @@ from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.mechanics.rotational_factors import rotational_factors
 from rigidfluid.core.mechanics.single_bodies import SingleBodies
 from rigidfluid.core.mechanics.wall_velocity import SlidingWalls
+from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.detector import Detector
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.interactions import acting_together
-from rigidfluid.core.model.interfaces import Body, Detector, ForceLaw
 from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Twist

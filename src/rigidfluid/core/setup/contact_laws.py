@@ -10,8 +10,8 @@ from pydantic import Field
 
 from rigidfluid.core.contact.film_loss import FilmLoss
 from rigidfluid.core.contact.restitution import Restitution
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.interactions import Between, Interaction
-from rigidfluid.core.model.interfaces import ForceLaw
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.model.types import Loads
 from rigidfluid.core.scene.spelling import suggestion

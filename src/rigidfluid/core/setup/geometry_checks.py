@@ -15,8 +15,9 @@ from rigidfluid.core.setup.shape_checks import check_shapes
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
+    from rigidfluid.core.model.body import Body
+    from rigidfluid.core.model.detector import Detector
     from rigidfluid.core.model.domain import Domain
-    from rigidfluid.core.model.interfaces import Body, Detector
     from rigidfluid.core.scene.mesh_tables import MeshTable
     from rigidfluid.core.setup.model import Model
     from rigidfluid.core.setup.placed_bodies import Arrangement

@@ -11,7 +11,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.shapes import equal_volume_radius, inscribed_radius, shape_key
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 from rigidfluid.core.setup.boundary_samples import points_of, sample_times, sampled_inflows
 from rigidfluid.core.setup.fluid import Fluid
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rigidfluid.core.model.interfaces import Mechanism
+from rigidfluid.core.model.mechanism import Mechanism
 from rigidfluid.errors import PluginError
 
 

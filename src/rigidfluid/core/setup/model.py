@@ -15,8 +15,9 @@ from rigidfluid.core.contact.detector_choice import choose_detector
 from rigidfluid.core.fluid.conditions import BoundaryCondition, NoSlip
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.wall import Wall
+from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import Detector, Mechanism
+from rigidfluid.core.model.mechanism import Mechanism
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.scene.boundary_tables import BoundaryTable
 from rigidfluid.core.scene.domain_table import WindowTable

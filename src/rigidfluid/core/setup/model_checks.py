@@ -25,7 +25,8 @@ from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
     from rigidfluid.core.joints.joint import Joint
-    from rigidfluid.core.model.interfaces import Body, Mechanism
+    from rigidfluid.core.model.body import Body
+    from rigidfluid.core.model.mechanism import Mechanism
     from rigidfluid.core.scene.mesh_tables import MeshTable
     from rigidfluid.core.setup.model import Model
     from rigidfluid.core.setup.rigid_body import PlacedMechanism, RigidBody, Start

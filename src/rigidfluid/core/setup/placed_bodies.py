@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from rigidfluid.core.contact.detector_choice import exact_detector
+from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.domain import Domain
-from rigidfluid.core.model.interfaces import Body, Detector
 from rigidfluid.core.scene.all_errors import raise_all
 from rigidfluid.core.setup.components import component_bodies
 from rigidfluid.core.setup.rigid_body import PlacedMechanism, RigidBody

@@ -9,7 +9,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.joints.coordinates import Drive
-from rigidfluid.core.model.interfaces import Mechanism
+from rigidfluid.core.model.mechanism import Mechanism
 from rigidfluid.core.setup.along_strokes import corners
 from rigidfluid.errors import SceneError
 

@@ -9,7 +9,8 @@ from pydantic import Field
 
 from rigidfluid.core.geometry.arrays import BoolArray
 from rigidfluid.core.joints.joint import Joint
-from rigidfluid.core.model.interfaces import Body, Mechanism
+from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.mechanism import Mechanism
 from rigidfluid.core.scene.body_tables import Freedom, PrescribedTable
 from rigidfluid.core.scene.joint_tables import SpringTable
 from rigidfluid.core.setup.checked import AngularVector, AnyRow, Name, Number, Positive, Vector, checked

@@ -10,7 +10,7 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.guarded import is_foreign, part_error
 from rigidfluid.core.geometry.wrong import Wrong
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 
 _POINTS = 32
 """Points of the surface that are looked at, about."""

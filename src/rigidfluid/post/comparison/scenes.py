@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from rigidfluid.core.case.load import scene_from_dict
-from rigidfluid.core.model.interfaces import FluidBackend
+from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.scene.fluid_table import FluidTable
 from rigidfluid.core.scene.overrides import override
 from rigidfluid.core.scene.scene import Scene

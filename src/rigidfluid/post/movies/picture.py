@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.colors import to_rgb
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 from rigidfluid.core.output.vtu import read_vtu
 from rigidfluid.post.reports.bodies import rotations
 from rigidfluid.post.reports.raster import Grid

@@ -7,7 +7,7 @@ from contourpy import contour_generator
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 from rigidfluid.post.reports.results import Results
 from rigidfluid.post.reports.view_plane import ViewPlane
 

@@ -10,7 +10,7 @@ from matplotlib.colors import to_rgb
 from scipy.spatial import ConvexHull
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 from rigidfluid.post.reports.bodies import rotations
 from rigidfluid.post.reports.raster import Grid, Sampling
 from rigidfluid.post.reports.results import Results

@@ -12,7 +12,7 @@ from rigidfluid.core.fluid.conditions import NoSlip, PrescribedPressure, Slip
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import cross, moment
-from rigidfluid.core.model.interfaces import FluidBackend
+from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.model.types import Pose
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import (

@@ -12,7 +12,7 @@ import pytest
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import cross
-from rigidfluid.core.model.interfaces import FluidBackend
+from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.model.types import Mesh, Pose, Step
 from rigidfluid.registry import missing_packages
 from rigidfluid.testing.fluid.boxes import balls_pose, box_with_balls, carried, nobody, on_ball

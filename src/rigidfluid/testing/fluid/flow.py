@@ -12,7 +12,7 @@ from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.mechanics.time_scheme import derivative_weights, extrapolation_weights, newton_euler
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
-from rigidfluid.core.model.interfaces import FluidBackend
+from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.model.types import Advance, FluidState, Mesh, Pose, Step, Twist, Wrench
 
 

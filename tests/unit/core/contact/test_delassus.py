@@ -9,7 +9,7 @@ from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.dynamics import DryDynamics
 from rigidfluid.core.mechanics.wrenches import contact_wrench, flat
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.reduced_model import Coupling, Evaluation, reduced_model
 from rigidfluid.core.model.types import Contacts, Pose, Twist, Wrench
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector

@@ -17,7 +17,7 @@ from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.contact.detector_check import MOST_PAIRS, check_detector
 from rigidfluid.core.geometry.arrays import BoolArray
 from rigidfluid.core.model.contacts import select
-from rigidfluid.core.model.interfaces import Detector
+from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts
 from rigidfluid.core.scene.scene import Scene

@@ -8,7 +8,7 @@ from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
 from rigidfluid.core.geometry.surface import Plane
 from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.mechanics.rigid import rotate
-from rigidfluid.core.model.interfaces import PartOptions
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Pose
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
 from rigidfluid.detectors.sphere import SphereDetector

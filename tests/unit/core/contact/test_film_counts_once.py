@@ -16,7 +16,7 @@ from rigidfluid.core.contact.hunt_crossley import LEAST, hardening
 from rigidfluid.core.contact.loads import inverse_mass
 from rigidfluid.core.contact.restitution import Restitution
 from rigidfluid.core.contact.stokes_number import FILM_EDGE, stokes_number, stokes_number_taken
-from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.types import Film, Loads, Motion
 from rigidfluid.forces.normal import NormalLaw
 

@@ -18,7 +18,7 @@ from rigidfluid.core.contact.hunt_crossley import LEAST
 from rigidfluid.core.contact.restitution import Restitution
 from rigidfluid.core.contact.stokes_number import stokes_number
 from rigidfluid.core.contact.substep import _greatest
-from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.types import Film, Motion
 from rigidfluid.errors import SceneError

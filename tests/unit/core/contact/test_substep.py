@@ -11,7 +11,7 @@ import pytest
 from rigidfluid.core.contact.substep import RESOLUTION, Reach, plan, relative_motion
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.dynamics import DryDynamics
-from rigidfluid.core.model.interfaces import ForceLaw
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.types import Contacts, Pose, Twist
 from rigidfluid.forces.normal import NormalLaw
 from rigidfluid.forces.spring_dashpot import SpringDashpotLaw

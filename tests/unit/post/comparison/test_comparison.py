@@ -47,7 +47,7 @@ BACKENDS = f"""
     from rigidfluid.backends.dry import Dry
     from rigidfluid.backends.scikit_fem import ScikitFem
     from rigidfluid.core.fluid.material import Newtonian
-    from rigidfluid.core.model.interfaces import PartOptions
+    from rigidfluid.core.model.part import PartOptions
     from rigidfluid.errors import StepError
     from rigidfluid.hookspecs import hookimpl
 

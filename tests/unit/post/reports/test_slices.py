@@ -16,7 +16,7 @@ import rigidfluid
 from rigidfluid.cli import app
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.facets import Facets
-from rigidfluid.core.model.interfaces import Body
+from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.types import Fields
 from rigidfluid.core.output.cell_gradients import EDGES
 from rigidfluid.post.reports import report

@@ -18,7 +18,9 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.meshing import generate_mesh
 from rigidfluid.core.mesh.size_field import Sizes
-from rigidfluid.core.model.interfaces import Body, Detector, PartOptions
+from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.detector import Detector
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
 from rigidfluid.core.scene.validation import read_table
 from rigidfluid.domains.box import Box, BoxOptions

@@ -1,0 +1,168 @@
+"""Abstract class of a fluid backend."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from typing import ClassVar
+
+from scipy.sparse import csc_array
+
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.fluid.material import Material, Newtonian
+from rigidfluid.core.geometry.answers import anything, instance, number, optional, several
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.geometry.guarded import gives
+from rigidfluid.core.model import backend_answers as backends
+from rigidfluid.core.model.extension import Extension, FactorisedExtension
+from rigidfluid.core.model.part import Part, PartOptions
+from rigidfluid.core.model.ranks import ALONE, Ranks
+from rigidfluid.core.model.types import Advance, Fields, FluidState, Mesh, Pose, Response, SolverCost, Step, Twist
+
+
+class FluidBackend(Part):
+    """Moves fluid and bodies together over one step.
+
+    With several ``ranks`` each process has a backend and a part of each mesh; all methods are called on all ranks
+    together, and results that are not fields are the same on all.
+
+    Parameters
+    ----------
+    options : PartOptions
+        The backend's own keys of the ``[fluid]`` table.
+    problem : FluidProblem or None
+        The fluid's equations and boundary conditions; None where there is no fluid.
+    """
+
+    kind: ClassVar[str] = "fluid backend"
+    wet: ClassVar[bool] = True
+    """Whether there is a fluid around the bodies, on a mesh; else it gets meshes without cells."""
+    materials: ClassVar[tuple[type[Material], ...]] = (Newtonian,)
+    """Materials that it solves for."""
+    curved_cells: ClassVar[bool] = False
+    """Whether it takes meshes with curved edges; else it gets straight ones."""
+    initial_flows: ClassVar[bool] = False
+    """Whether it can start with another `FluidProblem.initial` than rest; else such scenes are refused."""
+    oblique_faces: ClassVar[bool] = False
+    """Whether it takes slip and pressure conditions on faces that lie across no axis."""
+    periodic_faces: ClassVar[bool] = False
+    """Whether it takes periodic conditions."""
+    state_format: ClassVar[str | None] = None
+    """Name of the format of its state. Backends of one format resume each other's runs, and by `joined` and `cut` those
+    of other numbers of ranks; None where neither can be."""
+    ranks: Ranks = ALONE
+    """The processes that share the run."""
+
+    def __init__(self, options: PartOptions, problem: FluidProblem | None) -> None:
+        self.options = options
+        self.problem = problem
+
+    @gives(anything)
+    def extension(self, mesh: Mesh, stiffness: csc_array, held: BoolArray) -> Extension:
+        """Solver of Σ stiffness · u = 0 at vertices that are not ``held`` (N,), the sum over all ranks.
+
+        ``stiffness`` (N, N) is symmetric and has this rank's cells alone.
+        """
+        return FactorisedExtension(stiffness, held)
+
+    @abstractmethod
+    @gives(backends.state_and_kinetic)
+    def initial(self, mesh: Mesh, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
+        """Fluid at the start, by `FluidProblem.initial`, and its kinetic energy [energy].
+
+        A fluid at "rest" was so until its bodies were set in motion with ``twist``.
+        """
+
+    @gives(optional(backends.struck))
+    def struck(self, mesh: Mesh, pose: Pose, twist: Twist, step: Step) -> tuple[FluidState, float, Twist] | None:
+        """The same for a fluid at rest when faces were set in motion as well, with what they have at time 0; and the
+        twists of the motions then, free ones by their masses and the fluid's.
+
+        Before, the bodies had ``twist``; the ``step`` is so short that masses alone respond. Without this method such
+        a fluid is set in motion by its first step.
+        """
+        return None
+
+    @abstractmethod
+    @gives(backends.advance)
+    def advance(self, fluid: FluidState, mesh: Mesh, step: Step) -> Advance:
+        """Take one step from ``fluid`` on ``mesh`` to ``step.points``; raises StepRejected where it cannot."""
+
+    @abstractmethod
+    @gives(backends.response)
+    def response(self, fluid: FluidState, mesh: Mesh, step: Step, impulses: FloatArray) -> Response:
+        """Impulse response: the twists that each of c ``impulses`` (c, n, d+k) on the free bodies gives in this
+        ``step`` [force·time | force·length·time]; asked of backends with a mesh alone."""
+
+    @abstractmethod
+    @gives(backends.state_and_energy)
+    def transfer(self, fluid: FluidState, old: Mesh, new: Mesh) -> tuple[FluidState, float]:
+        """The state on another mesh of the same domain at the same time, and the kinetic energy lost [energy]."""
+
+    @gives(number(shorter=True))
+    def prediction_error(self, before: FluidState, after: FluidState, mesh: Mesh, extrapolation: FloatArray) -> float:
+        """Kinetic energy of the difference between a velocity and its extrapolation, ½ρ∫|uⁿ⁺¹ - e₀uⁿ - e₁uⁿ⁻¹|².
+
+        uⁿ⁺¹ is of ``after``, on its ``mesh``, the others are of ``before``; ``extrapolation`` (2,): e. Zero where
+        the fluid has no inertia. It is asked for in scenes with ``time.tolerance`` alone; a backend that does not
+        measure it leaves the step to the bodies.
+        """
+        return 0.0
+
+    @abstractmethod
+    @gives(backends.fields)
+    def fields(self, fluid: FluidState, mesh: Mesh) -> Fields:
+        """Velocity and pressure for output."""
+
+    @abstractmethod
+    @gives(backends.probes)
+    def probe(self, fluid: FluidState, mesh: Mesh, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Velocity (N, d) and pressure (N,) at ``points`` (N, d); outside the mesh the nearest cell's values."""
+
+    @abstractmethod
+    @gives(number(-1.0))
+    def unknowns(self, mesh: Mesh, prescribed: BoolArray) -> int:
+        """Number of unknowns of one step on this mesh, with the twists of the ``prescribed`` motions (N,)
+        prescribed."""
+
+    @gives(optional(instance(lambda: SolverCost)))
+    def solver_cost(self, cells: float, facets: float) -> SolverCost | None:
+        """Expected cost of steps on a mesh of about so many ``cells``, and ``facets`` on its boundary; None where the
+        backend does not know."""
+        return None
+
+    @abstractmethod
+    @gives(anything)
+    def forget(self) -> None:
+        """Drop every cache, so that the next step depends on the given state alone."""
+
+    @gives(optional(instance(lambda: Mapping)))
+    def state_shapes(self, mesh: Mesh, pose: Pose) -> Mapping[str, tuple[int, ...]] | None:
+        """Shapes of the arrays of its state on a mesh, with the bodies at a pose, as a checkpoint is to have them; None
+        where the backend does not say."""
+        return None
+
+    @gives(backends.state)
+    def memory(self) -> FluidState:
+        """Data on which the next step depends besides the given state, to the last bit: named arrays for a checkpoint.
+
+        A backend that does not say drops its caches.
+        """
+        self.forget()
+        return {}
+
+    @gives(anything)
+    def recall(self, memory: FluidState, mesh: Mesh) -> None:
+        """Go on from what `memory` gave, here or in another process, when the state was on this ``mesh``."""
+        self.forget()
+
+    @gives(backends.state)
+    def joined(self, states: Sequence[FluidState], parts: Sequence[Mesh], mesh: Mesh) -> FluidState:
+        """The state on a whole ``mesh`` from those on all its ``parts``; asked of the root alone, if there
+        is a `state_format`."""
+        raise NotImplementedError
+
+    @gives(several(lambda: Mapping))
+    def cut(self, fluid: FluidState, mesh: Mesh, parts: Sequence[Mesh]) -> list[FluidState]:
+        """The states on all ``parts`` of a whole ``mesh`` from the one there, to the last bit what `joined` takes."""
+        raise NotImplementedError

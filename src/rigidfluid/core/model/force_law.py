@@ -1,0 +1,77 @@
+"""Abstract class of a force law."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from rigidfluid.core.geometry.answers import rows
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.guarded import gives
+from rigidfluid.core.model import part_answers as parts
+from rigidfluid.core.model.part import Part, PartOptions
+from rigidfluid.core.model.types import Contacts, Loads, Motion
+
+
+class ForceLaw(Part):
+    """A short-range force between two surfaces: one that an energy gives, and one that takes energy out.
+
+    All forces act on ``body_a``, half-way between the contact points; ``core/mechanics/wrenches`` applies the reaction.
+
+    Parameters
+    ----------
+    options : PartOptions
+        The law's own keys of the table that names it.
+    range : float
+        The gap above which the law is zero [length].
+    loads : Loads, optional
+        What the contacts must hold, for laws that choose their strength by it.
+    """
+
+    kind: ClassVar[str] = "force law"
+    range: float
+    balls_only: ClassVar[bool] = False
+    film: bool = False
+    """Whether it resists as a film that no mesh resolves: it reads `Contacts.effective_radius`, which balls, ellipses
+    and ellipsoids have."""
+    conservative: bool = True
+    """Whether it has an energy; else force, energy and stiffness are zero."""
+    dissipative: bool = False
+    """Whether it has damping; else damping is zero."""
+    overlap: Literal["repels", "attracts", "unbounded"] = "repels"
+    """Behaviour of the energy's force at gap < 0; unbounded: the energy is infinite, and force and stiffness raise
+    StepRejected."""
+    loads: Loads | None = None
+    """Loads from which a law sets its strength; bodies of equal loads then meet alike."""
+
+    def __init__(self, options: PartOptions, range: float, loads: Loads | None = None) -> None:
+        self.options = options
+        self.range = range
+
+    @property
+    @gives(parts.ranges)
+    def ranges(self) -> tuple[float, ...]:
+        """The gaps where it begins, in order: its range, and those of its parts where it has several [length]."""
+        return (self.range,)
+
+    @abstractmethod
+    @gives(rows(lambda _, contacts: contacts.normal.shape, shorter=True))
+    def force(self, contacts: Contacts) -> FloatArray:
+        """Force F = -dU/dgap · n on ``body_a``, (m, d) [force]."""
+
+    @abstractmethod
+    @gives(parts.energies)
+    def energy(self, contacts: Contacts) -> FloatArray:
+        """Potential energy U of each contact, (m,), zero at range [energy]."""
+
+    @abstractmethod
+    @gives(rows(lambda _, contacts: contacts.gap.shape, shorter=True))
+    def stiffness(self, contacts: Contacts) -> FloatArray:
+        """-d(F·n)/dgap of each contact, (m,) [force/length]."""
+
+    @gives(rows(lambda _, contacts, motion: contacts.normal.shape, shorter=True))
+    def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
+        """Further force on ``body_a`` that the relative velocity gives, (m, d), of power ≤ 0 [force]."""
+        return np.zeros_like(contacts.normal)
