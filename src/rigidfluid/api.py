@@ -162,8 +162,10 @@ from rigidfluid.taylor_hood.sparse_backend import SparseOptions
 if TYPE_CHECKING:
     from rigidfluid.core.output.fluid_fields import FluidFields
     from rigidfluid.core.output.history import History
+    from rigidfluid.core.run.body_now import BodyNow
     from rigidfluid.core.run.run import Progress, run
-    from rigidfluid.core.run.simulation import BodyNow, SavedRun, Simulation
+    from rigidfluid.core.run.saved_run import SavedRun
+    from rigidfluid.core.run.simulation import Simulation
     from rigidfluid.post.notebook import NotebookProgress
     from rigidfluid.post.run_results import RunResults, load_results
 
@@ -383,13 +385,13 @@ def __getattr__(name: str) -> object:
 
 
 _LOOP = {
-    "BodyNow": "rigidfluid.core.run.simulation",
+    "BodyNow": "rigidfluid.core.run.body_now",
     "FluidFields": "rigidfluid.core.output.fluid_fields",
     "History": "rigidfluid.core.output.history",
     "NotebookProgress": "rigidfluid.post.notebook",
     "Progress": "rigidfluid.core.run.run",
     "RunResults": "rigidfluid.post.run_results",
-    "SavedRun": "rigidfluid.core.run.simulation",
+    "SavedRun": "rigidfluid.core.run.saved_run",
     "Simulation": "rigidfluid.core.run.simulation",
     "load_results": "rigidfluid.post.run_results",
     "run": "rigidfluid.core.run.run",

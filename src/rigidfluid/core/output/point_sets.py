@@ -10,7 +10,7 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.output.vtu import in_space, write_grid
+from rigidfluid.core.output.vtu import BODIES, CONTACTS, in_space, write_grid
 
 _VERTEX, _LINE = 1, 3
 """VTK's numbers of cells of one point and of two."""
@@ -33,7 +33,12 @@ class PointSet:
         write_grid(path, self.points, (self.kind, self.cells), spatial)
 
 
-def body_points(system: System, state: State) -> PointSet:
+def point_sets(system: System, state: State, forces: FloatArray) -> dict[str, PointSet]:
+    """Bodies and contacts of a state by the names of their datasets, with the ``forces`` of the contacts (m, d)."""
+    return {BODIES: _body_points(system, state), CONTACTS: _contact_points(system, state, forces)}
+
+
+def _body_points(system: System, state: State) -> PointSet:
     """A point for each body at its centre of mass; ``id`` is its number, from 0.
 
     In the plane ``angle``, ``angular_velocity``, ``torque`` and ``contact_torque`` have one component each.
@@ -54,7 +59,7 @@ def body_points(system: System, state: State) -> PointSet:
     return PointSet(pose.position, {name: _flat(values) for name, values in arrays.items()}, _VERTEX, numbers[:, None])
 
 
-def contact_points(system: System, state: State, forces: FloatArray) -> PointSet:
+def _contact_points(system: System, state: State, forces: FloatArray) -> PointSet:
     """A line for each contact in which a law acts, from the nearest point on one surface to that on the other.
 
     Each end has the ``surface`` that it is on, the ``force`` on that, of ``forces`` (m, d) on the first bodies

@@ -1,4 +1,4 @@
-"""Checks of the input that a caller gives a run: a folder, times, and numbers for a body."""
+"""Checks of the input that a caller gives a run: a folder, processes, times, and numbers for a body."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.value_types import describe
+from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.scene.validation import value_text
 from rigidfluid.errors import ArgumentError, SceneError
 from rigidfluid.regular_file import path_of
@@ -53,6 +54,19 @@ def folder_of(out: Path | None) -> Path | None:
     if out is None:
         return None
     return path_of("out", out, "a path, or None", "Give '.' for the working folder.")
+
+
+def require_processes(processes: int | None, backend: FluidBackend) -> None:
+    """Raise SceneError where a number of started processes is given and the ``backend`` shares a run among another."""
+    if processes is None:
+        return
+    if not isinstance(processes, int) or isinstance(processes, bool) or processes != backend.ranks.size:
+        raise SceneError(
+            "fluid.backend",
+            f"{backend.name!r}, which runs in {backend.ranks.size}, and {processes} processes",
+            "as many processes as the backend shares a run among",
+            "Start one process, without mpirun, or choose a backend for several, such as 'dolfinx'.",
+        )
 
 
 def require_function(key: str, value: object, allowed: str) -> None:

@@ -3,93 +3,58 @@
 from __future__ import annotations
 
 import json
-import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, fields, replace
 from pathlib import Path
 
 import numpy as np
 
 from rigidfluid.core.case.scene_model import Case, model_of
 from rigidfluid.core.coupling.contact_forces import contact_forces
-from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.value_types import describe
-from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_of
-from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.model.memory import told_memory
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FluidState, Pose, Twist, Wrench
+from rigidfluid.core.model.types import FluidState
 from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.fluid_fields import FluidFields
 from rigidfluid.core.output.history import History
-from rigidfluid.core.output.point_sets import PointSet, body_points, contact_points
+from rigidfluid.core.output.point_sets import point_sets
 from rigidfluid.core.output.records import StepCost, count_cells, joint_coordinates, records
-from rigidfluid.core.output.vtu import BODIES, CONTACTS
 from rigidfluid.core.output.writer import Writer, has_checkpoint
+from rigidfluid.core.run.body_now import BodyNow, bodies_now
 from rigidfluid.core.run.caller_input import (
     folder_of,
     interval_of,
     over_time,
     require_function,
+    require_processes,
     require_truth,
     time_of,
     twist_row,
     wrench_row,
 )
 from rigidfluid.core.run.clock import Clock
+from rigidfluid.core.run.control import body_row, following, present_motion, with_applied
 from rigidfluid.core.run.initial_state import initial_state
 from rigidfluid.core.run.mesh_keys import updater_of
+from rigidfluid.core.run.observers import Observer, Observers
 from rigidfluid.core.run.process import one_openblas_thread
 from rigidfluid.core.run.resumption import earlier_of, recall_memory
+from rigidfluid.core.run.run_timer import RunTimer
+from rigidfluid.core.run.saved_run import SavedRun, require_saved
 from rigidfluid.core.run.schedule import Schedule
 from rigidfluid.core.run.stepper import Counts, Stepper
 from rigidfluid.core.run.stopwatch import Stopwatch
 from rigidfluid.core.run.summary import summarise
 from rigidfluid.core.run.velocity_jump import halvings_after, halvings_within, shortened
 from rigidfluid.core.setup.assemble import assemble
-from rigidfluid.core.setup.model import Model
 from rigidfluid.core.setup.named_files import file_digests
-from rigidfluid.core.setup.prescribed import PrescribedMotion, prescribed_motion
+from rigidfluid.core.setup.prescribed import PrescribedMotion
 from rigidfluid.described import Described, first_names
-from rigidfluid.errors import ArgumentError, OutputError, SceneError, StepError
-
-Observer = Callable[["Simulation"], None]
-
-
-@dataclass(frozen=True, slots=True)
-class BodyNow:
-    """One body at present; ``force`` (d,) and ``torque`` (k,) are those of the fluid, ``contact_force`` and
-    ``contact_torque`` those of its contacts in the latest step, ``gap`` the least to any surface [length].
-
-    ``orientation`` (1,) angle [rad] or (4,) unit quaternion.
-    """
-
-    position: FloatArray
-    orientation: FloatArray
-    velocity: FloatArray
-    angular_velocity: FloatArray
-    force: FloatArray
-    torque: FloatArray
-    contact_force: FloatArray
-    contact_torque: FloatArray
-    gap: float
-
-
-@dataclass(frozen=True)
-class SavedRun:
-    """A run of a ``model`` as `Simulation.save` kept it."""
-
-    model: Model
-    state: State
-    memory: FluidState
-    system: System
-    counts: Counts
-    extremes: Extremes
-    rows: dict[str, int]
-    reached: tuple[float, ...]
+from rigidfluid.errors import ArgumentError, OutputError, StepError
 
 
 class Simulation(Described):
@@ -123,7 +88,7 @@ class Simulation(Described):
         with told_memory():
             system = assemble(model)
         self._ranks = system.backend.ranks
-        _refuse_lone_ranks(system.backend, processes)
+        require_processes(processes, system.backend)
         self.clock = Clock.for_steps(model.time.step, model.time.shortest, model.time.end)
         self._files = {} if out is None else file_digests(model.document)
         earlier = earlier_of(model, out, system, self.clock, self._files) if resume else None
@@ -133,9 +98,10 @@ class Simulation(Described):
         self.history = History(model.dimension, folder=out, coordinates=joint_coordinates(system))
         self.extremes = Extremes.none(len(system.bodies))
         self._probes = np.array(model.output.probes, dtype=float).reshape(-1, model.dimension)
-        self._start, self._cpu_start = time.perf_counter(), time.process_time()
+        self._timer = RunTimer()
+        self._times: tuple[float, ...] = ()
         self._writer: Writer | None = None
-        self._observers: list[tuple[Schedule, Observer]] = []
+        self._observers = Observers()
         try:
             with told_memory(), self._threads():
                 if earlier is None:
@@ -171,12 +137,12 @@ class Simulation(Described):
     @property
     def elapsed(self) -> float:
         """Wall seconds of this run, those before a resumption included."""
-        return self._elapsed_before + time.perf_counter() - self._start
+        return self._timer.elapsed
 
     @property
     def cpu_time(self) -> float:
         """CPU seconds of this process, of all its threads, those before a resumption included."""
-        return self._cpu_before + time.process_time() - self._cpu_start
+        return self._timer.cpu_time
 
     @property
     def time(self) -> float:
@@ -196,13 +162,7 @@ class Simulation(Described):
     @property
     def bodies(self) -> dict[str, BodyNow]:
         """All bodies by name, as they are now, and after them the mechanisms as wholes."""
-        s, count = self.state, len(self.system.bodies)
-        now = _bodies_now(
-            self.system.surfaces[:count], s.pose, s.twist, s.hydrodynamic_wrench, s.contact_wrench, s.gaps
-        )
-        motions, known = s.motions, self.system.motions
-        whole = (motions.pose, motions.twist, motions.hydrodynamic, motions.contact, known.least(s.gaps))
-        return now | _bodies_now(known.names, *whole, first=len(known.mass) - len(known.names))
+        return bodies_now(self.system, self.state)
 
     def fields(self) -> FluidFields:
         """Fields of the fluid at present, as `RunResults.fields` reads those of an output.
@@ -239,10 +199,7 @@ class Simulation(Described):
         with told_memory(), self._threads():
             self.state = self.stepper.after(self.state)
         self._record()
-        for schedule, observer in self._observers:
-            if schedule.due(self.state.tick):
-                schedule.reached(self.state.tick)
-                observer(self)
+        self._observers.call(self)
         return self.state
 
     def go(self, until: float = np.inf) -> None:
@@ -258,7 +215,7 @@ class Simulation(Described):
         require_function("observer", observer, "a function of the simulation")
         if every is not None:
             every = interval_of("every", every)
-        self._observers.append((Schedule(self.clock, every, self.time), observer))
+        self._observers.add(Schedule(self.clock, every, self.time), observer)
 
     def prescribe(
         self,
@@ -286,7 +243,7 @@ class Simulation(Described):
         SceneError
             If there is no such body, it is free, or a value is not allowed.
         """
-        row, now = self._row(name, True), self.system.prescribed_twist(self.time)
+        row, now = body_row(self.system, name, True), self.system.prescribed_twist(self.time)
         twist = twist_row(self.model.dimension, velocity, angular_velocity)
         within = over_time(over, now[row], twist)
         if self.system.has_fluid:
@@ -294,9 +251,9 @@ class Simulation(Described):
             halvings = halvings_within(halvings_after(self.system, self.state, row, twist, step), step, over)
             self.state = shortened(self.state, self.clock, halvings)
             within = within or self.clock.size(self.stepper.proposed(self.state))
-        motion = self._motion().changed(row, twist, self.time, within)
+        motion = present_motion(self.model, self.system, self.state).changed(row, twist, self.time, within)
         self.state = replace(self.state, prescription=motion.rows)
-        self._follow(motion)
+        self.stepper.system = following(self.system, motion)
 
     def apply(self, name: str, force: Sequence[float] | None = None, torque: Sequence[float] | None = None) -> None:
         """Apply a force at the centre of mass of a free body, and a torque, from now on until they are changed.
@@ -315,11 +272,8 @@ class Simulation(Described):
         SceneError
             If there is no such body, it is fixed or prescribed, or a value is not allowed.
         """
-        row, wrench = self._row(name, False), wrench_row(self.model.dimension, force, torque)
-        before = nothing(self.state.pose) if self.state.applied is None else self.state.applied
-        rows = flat(before)
-        rows[row] = wrench
-        self.state = replace(self.state, applied=wrench_of(rows, self.model.dimension))
+        row, wrench = body_row(self.system, name, False), wrench_row(self.model.dimension, force, torque)
+        self.state = with_applied(self.state, row, wrench)
 
     def save(self) -> SavedRun:
         """Keep the run as it is now, in memory; what follows equals what follows `restore` to the last bit."""
@@ -331,17 +285,13 @@ class Simulation(Described):
             counts=replace(self.counts),
             extremes=self.extremes,
             rows=self.history.lengths,
-            reached=tuple(schedule.latest for schedule, _ in self._observers),
+            reached=self._observers.latest,
         )
 
     def restore(self, saved: SavedRun) -> None:
         """Go back to where the run was saved; raises OutputError where its results go to a folder, SceneError where
         another model's run was saved, or this is no saved run."""
-        if not isinstance(saved, SavedRun):
-            raise SceneError("restore", repr(saved), "what save() gave", "Keep that, and restore it.")
-        if saved.model is not self.model and saved.model.document != self.model.document:
-            found, allowed = f"a run of {saved.model.name!r} or of other values", "one of the same scene or model"
-            raise SceneError("restore", found, allowed, "Restore it in a Simulation of its own scene.")
+        require_saved(saved, self.model)
         if self._writer is not None:
             raise OutputError(
                 str(self._writer.out),
@@ -354,8 +304,7 @@ class Simulation(Described):
         self.stepper.system = saved.system
         self.stepper.counts = replace(saved.counts)
         self.history.cut(saved.rows)
-        for (schedule, _), latest in zip(self._observers, saved.reached, strict=False):
-            schedule.latest = latest
+        self._observers.go_back(saved.reached)
 
     def finish(self, status: str) -> None:
         """Sum up, in memory and on disk; raises SceneError where the status is no text, OutputError where the disk
@@ -395,8 +344,6 @@ class Simulation(Described):
         return one_openblas_thread() if self.system.has_fluid else nullcontext()
 
     def _begin(self, out: Path | None) -> None:
-        self._elapsed_before = self._cpu_before = 0.0
-        self._times: tuple[float, ...] = ()
         with self.watch("mesh"):
             self.state = initial_state(
                 self.system, self.mesh_updater, self.clock, self.model.time.tolerance is not None
@@ -418,11 +365,12 @@ class Simulation(Described):
         self.state = earlier.state
         recall_memory(out, earlier, self.system.backend)
         self.stepper.counts = Counts(**{field.name: getattr(earlier, field.name) for field in fields(Counts)})
-        self._elapsed_before, self._cpu_before, self._times = earlier.elapsed, earlier.cpu_time, earlier.times
+        self._timer.add(earlier.elapsed, earlier.cpu_time)
+        self._times = earlier.times
         self.watch.seconds = dict(earlier.seconds)
         self.extremes = earlier.extremes
         if self.state.prescription is not None:
-            self._follow(PrescribedMotion(self.state.prescription))
+            self.stepper.system = following(self.system, PrescribedMotion(self.state.prescription))
         self._writer = self._writer_to(out, earlier)
         self.observe(Simulation._output, self.model.output.every)
 
@@ -450,16 +398,9 @@ class Simulation(Described):
             return
         with self.watch("write"):
             fields = self.fields() if count_cells(self.state.mesh) else None
-            self._writer.output(fields, self._points(), self._times)
+            forces = contact_forces(self.system, self.stepper.scheme, self.state, self.time)
+            self._writer.output(fields, point_sets(self.system, self.state, forces), self._times)
             self._writer.checkpoint(self._checkpoint(self._writer, memory))
-
-    def _points(self) -> dict[str, PointSet]:
-        """Bodies and contacts of the present state."""
-        forces = contact_forces(self.system, self.stepper.scheme, self.state, self.time)
-        return {
-            BODIES: body_points(self.system, self.state),
-            CONTACTS: contact_points(self.system, self.state, forces),
-        }
 
     def _checkpoint(self, writer: Writer, memory: FluidState) -> Checkpoint:
         return Checkpoint(
@@ -476,67 +417,4 @@ class Simulation(Described):
             cpu_time=self.cpu_time,
             extremes=self.extremes,
             ranks=self._ranks.size,
-        )
-
-    def _motion(self) -> PrescribedMotion:
-        """Prescribed motion at present: since the start by the scene, or by the caller."""
-        if self.state.prescription is not None:
-            return PrescribedMotion(self.state.prescription)
-        return prescribed_motion(self.model.bodies, self.system.motions.pose)
-
-    def _follow(self, motion: PrescribedMotion) -> None:
-        """Let prescribed bodies move so."""
-        joints = self.system.joints.following(motion)
-        self.stepper.system = replace(
-            self.system, prescribed_twist=motion, prescribed_pose=motion.pose_at, joints=joints
-        )
-
-    def _row(self, name: str, prescribed: bool) -> int:
-        """The number of a body whose motion is prescribed, or of a free one."""
-        names = self.system.surfaces[: len(self.system.bodies)]
-        right = [body for body, given in zip(names, self.system.prescribed, strict=True) if given == prescribed]
-        if name in right:
-            return names.index(name)
-        other = "free" if prescribed else "fixed or prescribed"
-        found = f"{name!r}, which {f'is {other}' if name in names else 'is not there'}"
-        wanted = "a body that is fixed or prescribed" if prescribed else "a free body or component"
-        remedy = "Name another, or give it 'fixed = true' in the scene." if prescribed else "Name another."
-        raise SceneError("body", found, f"{wanted}: {', '.join(map(str, right)) or 'there is none'}", remedy)
-
-
-def _bodies_now(
-    names: Sequence[str],
-    pose: Pose,
-    twist: Twist,
-    by_fluid: Wrench,
-    contact: Wrench,
-    gaps: FloatArray,
-    first: int = 0,
-) -> dict[str, BodyNow]:
-    """Bodies at present by these names, from row ``first`` on."""
-    return {
-        name: BodyNow(
-            position=pose.position[i],
-            orientation=pose.orientation[i],
-            velocity=twist.velocity[i],
-            angular_velocity=twist.angular_velocity[i],
-            force=by_fluid.force[i],
-            torque=by_fluid.torque[i],
-            contact_force=contact.force[i],
-            contact_torque=contact.torque[i],
-            gap=float(gaps[i]),
-        )
-        for i, name in enumerate(names, start=first)
-    }
-
-
-def _refuse_lone_ranks(backend: FluidBackend, processes: int | None) -> None:
-    if processes is None:
-        return
-    if not isinstance(processes, int) or isinstance(processes, bool) or processes != backend.ranks.size:
-        raise SceneError(
-            "fluid.backend",
-            f"{backend.name!r}, which runs in {backend.ranks.size}, and {processes} processes",
-            "as many processes as the backend shares a run among",
-            "Start one process, without mpirun, or choose a backend for several, such as 'dolfinx'.",
         )
