@@ -68,6 +68,6 @@ def _moves(system: System, body: int) -> bool:
 
 
 def _drives(system: System, body: int, shape: Surface) -> bool:
-    """Whether the weight is within 60° of pointing at a surface."""
+    """Tell whether the weight is within 60° of pointing at a surface."""
     weight = system.weight[body]
     return bool(weight @ facing_normal(system, body, shape) < -0.5 * np.linalg.norm(weight))

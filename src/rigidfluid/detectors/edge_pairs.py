@@ -55,7 +55,7 @@ def passing_edges(points_a, edges_a, points_b, edges_b, reach):
 
 @njit(cache=True, nogil=True, forceinline=True)
 def _beyond(p, q, r, s, reach):
-    """Whether the boxes around two edges are farther apart than ``reach`` along some axis."""
+    """Tell whether the boxes around two edges are farther apart than ``reach`` along some axis."""
     apart = -np.inf
     for k in range(3):
         apart = max(apart, min(r[k], s[k]) - max(p[k], q[k]), min(p[k], q[k]) - max(r[k], s[k]))

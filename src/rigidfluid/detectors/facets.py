@@ -139,7 +139,7 @@ class FacetDetector(Detector):
 
 
 def is_known(shape: Surface) -> bool:
-    """Whether the detector takes walls of this shape."""
+    """Tell whether the detector takes walls of this shape."""
     return shape.radius is not None or isinstance(shape, FacetSurface)
 
 
@@ -345,7 +345,7 @@ def _no_touches(dimension: int) -> Touches:
 
 
 def _is_taken(piece: Piece, long: bool) -> bool:
-    """Whether a piece is of facets, flat or round; ``long``: some bodies are ellipsoids that are no balls."""
+    """Tell whether a piece is of facets, flat or round; ``long``: some bodies are ellipsoids that are no balls."""
     if isinstance(piece.shape, FacetSurface) or piece.shape.plane:
         return True
     return is_whole(piece) if long else is_round(piece.shape)

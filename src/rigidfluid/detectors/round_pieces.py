@@ -12,7 +12,7 @@ _ROUNDING = 1e-6
 
 
 def is_whole(piece: Piece) -> bool:
-    """Whether a piece is a round bump, or the whole of a round hollow."""
+    """Tell whether a piece is a round bump, or the whole of a round hollow."""
     if not is_round(piece.shape):
         return False
     radius, dimension = radius_of(piece.shape), len(piece.shape.bounds[0])

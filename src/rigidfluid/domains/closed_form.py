@@ -30,7 +30,7 @@ class Offset:
     radius: float
     least_radius: float
     round: bool = False
-    """Whether the core is a point."""
+    """Tell whether the core is a point."""
 
     def closest_point(self, points: FloatArray) -> FloatArray:
         """c + r (x - c)/|x - c| with the nearest point c of the core, (N, d)."""

@@ -96,7 +96,7 @@ def _share_ridge(facets, facet, i, other):
 
 @njit(cache=True, nogil=True)
 def is_whole(neighbours, chosen):
-    """Whether the facets ``chosen`` are one closed piece, in which each has one other beyond each ridge."""
+    """Tell whether the facets ``chosen`` are one closed piece, in which each has one other beyond each ridge."""
     seen = np.zeros(len(neighbours), np.bool_)
     waiting = [chosen[0]]
     seen[chosen[0]] = True

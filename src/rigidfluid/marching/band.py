@@ -13,7 +13,7 @@ from numba import njit
 
 @njit(cache=True, nogil=True)
 def in_band(points, neighbours, vertex, distance, band):
-    """Whether a vertex at ``distance`` D is in a `field.Band`."""
+    """Tell whether a vertex at ``distance`` D is in a `field.Band`."""
     if distance <= band.width or band.slack == 0.0:
         return distance <= band.width
     short = (distance - band.width) / band.slack

@@ -11,7 +11,7 @@ from numba import njit
 
 @njit(cache=True, nogil=True)
 def is_convex(points, surfaces, chosen):
-    """Whether the facets ``chosen``, one closed piece, are the surface of a convex body.
+    """Tell whether the facets ``chosen``, one closed piece, are the surface of a convex body.
 
     It is convex at each of its ridges: no facet's neighbour rises above its plane into the fluid.
     """

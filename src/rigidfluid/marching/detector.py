@@ -26,7 +26,7 @@ class MarchingDetector(Detector):
 
     needs_mesh: ClassVar[bool] = True
     whole_domain: ClassVar[bool]
-    """Whether the fields go on to the end of the mesh."""
+    """Tell whether the fields go on to the end of the mesh."""
     Options: ClassVar[type[PartOptions]] = MarchingOptions
     options: MarchingOptions
 

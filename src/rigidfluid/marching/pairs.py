@@ -22,7 +22,7 @@ from rigidfluid.marching.workspace import KNOWN
 
 @njit(cache=True, nogil=True)
 def any_near(points, facets, chosen, centre, radius):
-    """Whether the bounding box of one of the facets ``chosen`` meets a ball."""
+    """Tell whether the bounding box of one of the facets ``chosen`` meets a ball."""
     nearest = np.inf
     for facet in chosen:
         nearest = min(nearest, _box_to_point(points, facets[facet], centre))

@@ -163,7 +163,7 @@ _NOTHING = Reached(np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0), np
 
 
 def _starts_in(part: Part, surfaces: Sequence[int]) -> bool:
-    """Whether a vertex of the surfaces is in the part's cells; else a march from them has nowhere to go."""
+    """Tell whether a vertex of the surfaces is in the part's cells; else a march from them has nowhere to go."""
     corners = part.topology.surfaces.facets[part.topology.seeds(surfaces).facets]
     return bool((corners < part.inside).any())
 

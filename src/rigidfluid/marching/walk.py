@@ -69,7 +69,7 @@ def _first_corner(facets, facet, bits):
 
 @njit(cache=True, nogil=True, forceinline=True)
 def _holds(facets, facet, bits, other):
-    """Whether ``other`` holds all corners of ``facet`` that ``bits`` name."""
+    """Tell whether ``other`` holds all corners of ``facet`` that ``bits`` name."""
     for i in range(facets.shape[1]):
         if bits >> i & 1:
             found = False

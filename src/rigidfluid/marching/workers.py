@@ -54,7 +54,7 @@ class Workers:
 
 
 def same_topology(one: Mesh, other: Mesh) -> bool:
-    """Whether two meshes differ by where their vertices are alone, as told by the arrays that they share."""
+    """Tell whether two meshes differ by where their vertices are alone, as told by the arrays that they share."""
     return one.cells is other.cells and one.facets is other.facets and one.markers is other.markers
 
 

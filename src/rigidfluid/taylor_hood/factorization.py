@@ -28,7 +28,7 @@ class Factors(Protocol):
 
     @property
     def reusable(self) -> bool:
-        """Whether `factorise` can start from them."""
+        """Tell whether `factorise` can start from them."""
 
     @property
     def rebuild_cost(self) -> int | None:
@@ -94,7 +94,7 @@ def _pardiso_factors(matrix: sparse.csr_array, analysed: Pardiso | None, orderin
 
 
 def _serves(factors: Pardiso, matrix: sparse.csr_array) -> bool:
-    """Whether the factors find a known solution, all ones: by its residual, and in single precision by its error."""
+    """Tell whether the factors find a known solution, all ones: by its residual, in single precision by its error."""
     right_side = matrix @ np.ones(matrix.shape[0])
     found = factors.solve(right_side)
     residual = float(np.linalg.norm(right_side - matrix @ found) / np.linalg.norm(right_side))

@@ -57,7 +57,7 @@ class LaggedSolver(ABC, Generic[Matrix]):
 
     @property
     def is_made(self) -> bool:
-        """Whether there is a preconditioner."""
+        """Tell whether there is a preconditioner."""
         return self._is_made
 
     @final

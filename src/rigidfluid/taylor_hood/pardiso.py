@@ -115,7 +115,7 @@ class Pardiso:
 
     @property
     def reusable(self) -> bool:
-        """Whether the analysis serves all matrices of the pattern."""
+        """Tell whether the analysis serves all matrices of the pattern."""
         return self.settings is FAST
 
     @property
@@ -130,7 +130,10 @@ class Pardiso:
         return 1 + round(renewal / (1.1 * factors + 2.5 * matrix))
 
     def has_pattern_of(self, matrix: sparse.csr_array) -> bool:
-        """Whether the analysis serves this matrix: factors by more threads or fewer than it knew end the process."""
+        """Tell whether the analysis serves this matrix.
+
+        It does not with another number of threads than it was made with: factors would end the process.
+        """
         rows, columns = matrix.indptr, matrix.indices
         alike = np.array_equal(self._rows, rows) and np.array_equal(self._columns, columns)
         return alike and self._threads == threads()

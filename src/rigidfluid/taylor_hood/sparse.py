@@ -261,7 +261,7 @@ class SparseDiscretisation:
         return Parts(self._constraint, system_matrix, masses, m.points, assembled.coefficients, reduced)
 
     def _is_outdated(self, matrix: CoupledMatrix) -> bool:
-        """Whether the factors at hand are of a step of another length or order, which serve badly."""
+        """Tell whether the factors at hand are of a step of another length or order, which serve badly."""
         origin = self._made_from.get(matrix.viscosity != 0.0)
         return origin is not None and abs(matrix.inertia - origin.inertia) > _OUTDATED * origin.inertia
 

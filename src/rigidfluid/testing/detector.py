@@ -41,9 +41,9 @@ class DetectorContract:
     point_tolerance: ClassVar[float] = 1e-6
     """Accuracy of contact points along the surface, and of normals."""
     detects_overlap: ClassVar[bool] = True
-    """Whether surfaces that overlap are found, with a negative gap."""
+    """Tell whether surfaces that overlap are found, with a negative gap."""
     balls_only: ClassVar[bool] = False
-    """Whether other shapes than balls are refused."""
+    """Tell whether other shapes than balls are refused."""
     reach: ClassVar[float] = 0.5
     """The reach of most tests [length]."""
 

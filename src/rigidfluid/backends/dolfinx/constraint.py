@@ -59,7 +59,7 @@ class DistributedConstraint:
 
     @property
     def is_coarse(self) -> BoolArray:
-        """Whether linear functions have this process' free velocities and twists: at vertices, and all twists."""
+        """Tell whether linear functions have this process' free velocities and twists: at vertices, and all twists."""
         at_vertices = np.repeat(self.space.owned_nodes < self.space.numbering.vertices, self.space.numbering.dimension)
         return np.concatenate([at_vertices[self.velocity_free], np.ones(self.twists, dtype=bool)])
 

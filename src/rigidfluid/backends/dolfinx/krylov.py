@@ -32,7 +32,7 @@ class Krylov(LaggedSolver[Reduced]):
     defaults: ClassVar[Settings]
     """PETSc options of the solver."""
     keeps_pattern: ClassVar[bool]
-    """Whether the analysis of a matrix' pattern serves for the next one."""
+    """Tell whether the analysis of a matrix' pattern serves for the next one."""
 
     def __init__(self, ranks: Ranks, dimension: int, settings: Settings) -> None:
         super().__init__(ranks, dimension)

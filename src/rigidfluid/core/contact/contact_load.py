@@ -54,6 +54,6 @@ def damping_loss(system: System, contacts: Contacts, dynamics: BodyDynamics, dam
 
 
 def prescribed_bodies(system: System) -> BoolArray:
-    """Whether a body's twist may have a prescribed part (n,): any body's where something moves relatively in a
+    """Tell whether a body's twist may have a prescribed part (n,): any body's where something moves relatively in a
     mechanism, as that part is zero in all others."""
     return np.ones_like(system.prescribed) if system.motions.driven else system.prescribed

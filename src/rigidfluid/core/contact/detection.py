@@ -79,7 +79,7 @@ class MeshDetection(Detection):
         return near.extrapolate(dynamics.pose), near
 
     def has_missed(self, seen: Contacts, found: Contacts) -> bool:
-        """Whether a contact is in range that was beyond the detector's reach, or a pair has more than were seen."""
+        """Tell whether a contact in range was beyond the detector's reach, or a pair has more than were seen."""
         count = len(self._system.surfaces)
         before, after = (each.body_a * count + each.body_b for each in (seen, found))
         pairs, counts = np.unique(after[found.gap < self._system.law_range], return_counts=True)

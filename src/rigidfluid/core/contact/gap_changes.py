@@ -20,7 +20,7 @@ WIDEST_OPENING = 1.5
 
 
 def change_too_fast(system: System, state: State, pose: Pose, mesh_at: Callable[[Pose], Mesh]) -> bool:
-    """Whether the mesh in a gap would be squeezed, or a film opened, by more than a step to ``pose`` can follow.
+    """Tell whether the mesh in a gap would be squeezed, or a film opened, by more than a step to ``pose`` can follow.
 
     ``mesh_at(pose)`` is the mesh there; gaps change too fast where it raises StepRejected.
     """

@@ -201,7 +201,7 @@ def _dampers(law: ForceLaw, iterate: _Iterate[M], size: float) -> _Dampers:
 
 
 def _converged(law: ForceLaw, iterate: _Iterate[M], gap: FloatArray, missing: FloatArray) -> bool:
-    """Whether gaps match the prediction and the residual force displaces no body beyond tolerance."""
+    """Tell whether gaps match the prediction and the residual force displaces no body beyond tolerance."""
     enough = TOLERANCE * law.range + _ROUNDING * np.abs(iterate.pose.position).max()
     moved = iterate.compliance.diagonal() * np.linalg.norm(missing, axis=1)
     return bool(np.all(np.abs(iterate.gap - gap) <= enough) and np.all(moved <= enough))

@@ -30,7 +30,7 @@ class PairList:
     reach: float
 
     def holds(self, position: FloatArray, reach: float) -> bool:
-        """Whether no other pair can be within ``reach``: all pairs are in the list, or nothing has moved far."""
+        """Tell whether no other pair can be within ``reach``: all pairs are in the list, or nothing has moved far."""
         if np.isinf(self.reach):
             return True
         spare = 0.5 * (self.reach - reach)
@@ -69,7 +69,7 @@ class NearPairs:
 
 @njit(cache=True, nogil=True)
 def _all_near(position, before, distance):  # type: ignore[no-untyped-def]
-    """Whether every point is less than a distance from where it was."""
+    """Tell whether every point is less than a distance from where it was."""
     for i in range(len(position)):
         square = 0.0
         for k in range(position.shape[1]):

@@ -40,13 +40,13 @@ def detect_contacts_and_gaps(system: System, pose: Pose, mesh: Mesh | None) -> t
 
 
 def interacting(system: System, contacts: Contacts) -> BoolArray:
-    """Whether a contact (m,) is between separate bodies, and some law's, if there is any law."""
+    """Tell whether a contact (m,) is between separate bodies, and some law's, if there is any law."""
     apart = are_separate(system, contacts)
     return apart & acted_in(system.interactions, contacts) if system.interactions else apart
 
 
 def are_separate(system: System, contacts: Contacts) -> BoolArray:
-    """Whether a contact (m,) is neither between parts of one articulated body nor between bodies that a joint joins."""
+    """Tell whether a contact (m,) is neither between parts of one articulated body nor between bodies at one joint."""
     count = len(system.bodies)
     other = system.assembly[np.minimum(contacts.body_b, count - 1)]
     apart = (contacts.body_b >= count) | (system.assembly[contacts.body_a] != other)

@@ -13,8 +13,8 @@ _EVERY = 128
 
 
 def is_due(count: int) -> bool:
-    """Whether parts are checked after so many steps, besides the start: after the same ones where a run is taken up
-    again."""
+    """Tell whether parts are checked after so many steps, besides the start: after the same ones where a run is
+    resumed."""
     return count in _EARLY or count % _EVERY == 0
 
 

@@ -90,7 +90,7 @@ class FluidScheme(ABC):
         return self._with_turning(step, state, path)
 
     def is_unsteady(self, state: State, path: BodyStep, size: float) -> bool:
-        """Whether contact impulses changed by more than STEADY."""
+        """Tell whether contact impulses changed by more than STEADY."""
         if path.coupling is None:
             return False
         arms = twist_arms(self._system)
@@ -104,7 +104,7 @@ class FluidScheme(ABC):
     def restarted(self, state: State, first_level: int) -> State: ...
 
     def repeats_start(self, state: State, path: BodyStep) -> bool:
-        """Whether nothing touches in a first step."""
+        """Tell whether nothing touches in a first step."""
         return path.coupling is None and state.past is None
 
     def converge(self, state: State, candidate: State, path: BodyStep, step: Step) -> tuple[State, bool]:
@@ -177,7 +177,7 @@ class FluidScheme(ABC):
         return Coupling(model, load, used.load_before, used.correction + self._correction(model, step, missed))
 
     def _agree(self, used: Coupling, found: Coupling, path: BodyStep, state: State, candidate: State) -> bool:
-        """Whether path and solution agree: changes of load and responses count by those of velocities at the end."""
+        """Compare path and solution: changes of load and responses count by those of velocities at the end."""
         model, size = found.model, (candidate.past_step or 0.0)
         if len(model.velocities) == 0:
             return True

@@ -151,8 +151,8 @@ def _groups(system: System, position: FloatArray, bodies: IntArray) -> IntArray:
 
 
 def _is_nearest(position: FloatArray, responding: IntArray, pushed: IntArray, side: IntArray) -> BoolArray:
-    """Whether the ``pushed`` body (f,) is the nearest one of its right ``side`` (f,) to the ``responding`` one (c,),
-    (c, f)."""
+    """Tell whether the ``pushed`` body (f,) is the nearest one of its right ``side`` (f,) to the ``responding`` one
+    (c,), (c, f)."""
     apart = np.linalg.norm(position[responding][:, None] - position[pushed][None, :], axis=2)
     nearest = np.full((len(responding), int(side.max()) + 1), np.inf)
     for column, number in enumerate(side):

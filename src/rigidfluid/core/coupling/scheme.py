@@ -32,17 +32,17 @@ class Scheme(Protocol):
         place."""
 
     def is_unsteady(self, state: State, path: BodyStep, size: float) -> bool:
-        """Whether contact impulses changed so much that a second solution of the step is certain."""
+        """Tell whether contact impulses changed so much that a second solution of the step is certain."""
 
     def changes_gaps_too_fast(self, state: State, pose: Pose, mesh_at: Callable[[Pose], Mesh]) -> bool:
-        """Whether gaps change by more than a step to ``pose`` can follow, on the mesh that ``mesh_at(pose)`` is."""
+        """Tell whether gaps change by more than a step to ``pose`` can follow, on the mesh ``mesh_at(pose)``."""
 
     def restarted(self, state: State, first_level: int) -> State:
         """The state at a corner, where rates change at once; ``first_level``: of a step that follows a fluid's layers
         from there."""
 
     def repeats_start(self, state: State, path: BodyStep) -> bool:
-        """Whether a step without a past, as the first one, is solved again along the path that its solution shows."""
+        """Tell whether a step without a past, as the first, is solved again along the path that its solution shows."""
 
     def converge(self, state: State, candidate: State, path: BodyStep, step: Step) -> tuple[State, bool]:
         """The ``candidate`` with the coupling that its solution has shown, and whether path and solution agree."""

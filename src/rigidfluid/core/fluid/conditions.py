@@ -57,17 +57,17 @@ class BoundaryCondition(ABC):
     @property
     @abstractmethod
     def prescribes_normal(self) -> bool:
-        """Whether the velocity across the piece is given, else the traction."""
+        """Tell whether the velocity across the piece is given, else the traction."""
 
     @property
     @abstractmethod
     def prescribes_tangential(self) -> bool:
-        """Whether the velocity along the piece is given, else the traction."""
+        """Tell whether the velocity along the piece is given, else the traction."""
 
     @property
     @abstractmethod
     def passes(self) -> bool:
-        """Whether fluid goes in or out here, and its kinetic energy with it."""
+        """Tell whether fluid goes in or out here, and its kinetic energy with it."""
 
     def velocity(self, time: float, points: FloatArray) -> FloatArray:
         """Velocity (N, d) at ``points`` (N, d) of the piece, where all of it is held [length/time]."""
@@ -98,32 +98,32 @@ class BoundaryCondition(ABC):
 
     @property
     def holds_all(self) -> bool:
-        """Whether the whole velocity is given."""
+        """Tell whether the whole velocity is given."""
         return self.prescribes_normal and self.prescribes_tangential
 
     @property
     def holds_part(self) -> bool:
-        """Whether the velocity is given either across or along the piece, and not both."""
+        """Tell whether the velocity is given either across or along the piece, and not both."""
         return self.prescribes_normal != self.prescribes_tangential
 
     @property
     def slips(self) -> bool:
-        """Whether fluid goes along it without traction, and not across."""
+        """Tell whether fluid goes along it without traction, and not across."""
         return self.prescribes_normal and not self.prescribes_tangential
 
     @property
     def is_open(self) -> bool:
-        """Whether fluid goes in or out by itself; else nothing fixes the constant in the pressure."""
+        """Tell whether fluid goes in or out by itself; else nothing fixes the constant in the pressure."""
         return self.passes and not self.prescribes_normal
 
     @property
     def is_wall(self) -> bool:
-        """Whether it is part of the container, which holds the fluid and lets none pass."""
+        """Tell whether it is part of the container, which holds the fluid and lets none pass."""
         return self.holds_all and not self.passes
 
     @property
     def rests(self) -> bool:
-        """Whether it is a wall whose velocity is zero at all times: where two walls meet, that one holds the fluid."""
+        """Tell whether it is a wall that never moves: where two walls meet, that one holds the fluid."""
         return False
 
 
@@ -145,7 +145,7 @@ class NoSlip(BoundaryCondition):
 
     @property
     def rests(self) -> bool:
-        """Whether no velocity is given."""
+        """Tell whether no velocity is given."""
         return self.sliding is None
 
 

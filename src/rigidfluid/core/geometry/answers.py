@@ -43,8 +43,8 @@ def refuse_other_rows(answer: Any, shape: tuple[int, ...], name: str = "", short
 
 
 def _are_numbers(answer: Any, shape: tuple[int, ...]) -> bool:
-    """Whether it surely is an array of finite numbers of a ``shape``: told quickly, as some are asked for hundreds of
-    times in a step."""
+    """Tell whether it surely is an array of finite numbers of a ``shape``: told quickly, as some are asked for hundreds
+    of times in a step."""
     return (
         type(answer) is np.ndarray
         and answer.dtype is _FLOAT

@@ -46,8 +46,8 @@ def crossings(points, edges, tree):
 
 @njit(cache=True, nogil=True)
 def _apart(points, edge, facet):
-    """Whether the boxes around both do not meet: of parts of one straight line, rounding alone says on which side of
-    each other they are."""
+    """Tell whether the boxes around both do not meet: of parts of one straight line, rounding alone says on which side
+    of each other they are."""
     for k in range(points.shape[1]):
         low, high = min(points[edge[0], k], points[edge[1], k]), max(points[edge[0], k], points[edge[1], k])
         below = above = True
@@ -103,7 +103,7 @@ def _turn(points, a, b, p):
 
 @njit(cache=True, nogil=True)
 def _within(points, p, a, b):
-    """Whether p is between a and b on their line."""
+    """Tell whether p is between a and b on their line."""
     return np.sum((points[p] - points[a]) * (points[p] - points[b])) <= 0.0
 
 

@@ -193,7 +193,7 @@ class FacetSurface(Surface):
 
 
 def _distinct(query: IntArray, foot: FloatArray, first: FloatArray, touching: float) -> BoolArray:
-    """Whether each place is farther than ``touching`` [length] from the first of its point, and from those before,
+    """Tell whether each place is farther than ``touching`` [length] from the first of its point, and from those before,
     (m,).
 
     Rounding may say of a point over an end of facets that it is an inside of one and the end of another.

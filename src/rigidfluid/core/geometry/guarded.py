@@ -144,7 +144,7 @@ def _blamed(cls: type, key: str) -> Iterator[None]:
 
 
 def is_foreign(cls: type) -> bool:
-    """Whether a class of parts is not one of rigidfluid itself."""
+    """Tell whether a class of parts is not one of rigidfluid itself."""
     return not str(cls.__module__).startswith("rigidfluid.")
 
 

@@ -1,4 +1,4 @@
-"""Whether attributes have the types that interfaces annotate."""
+"""Check that attributes have the types that interfaces annotate."""
 
 from __future__ import annotations
 

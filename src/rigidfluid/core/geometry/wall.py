@@ -50,7 +50,7 @@ def centre_of(shape: Surface) -> FloatArray:
 
 
 def is_round(shape: Surface) -> bool:
-    """Whether it is a ball's surface, seen from outside or inside, or a part of one."""
+    """Tell whether it is a ball's surface, seen from outside or inside, or a part of one."""
     return shape.plane is None and shape.radius is not None and bool(np.isfinite(shape.radius))
 
 

@@ -23,7 +23,7 @@ class Constraint(metaclass=Guarded):
 
     kind: ClassVar[str] = "constraint"
     joins_points: ClassVar[bool] = False
-    """Whether the misfit is by how much the points are apart that it holds together [length]."""
+    """Tell whether the misfit is by how much the points are apart that it holds together [length]."""
 
     name: str
     markers: MarkerPair

@@ -36,7 +36,7 @@ class Joint(SpatialPart):
 
     kind: ClassVar[str] = "joint"
     needs_point: ClassVar[bool] = False
-    """Whether a scene has to say where it is; else it is at the first body's centre of mass if the scene does not."""
+    """Tell whether a scene has to say where it is; else, if none is given, it is at the first body's centre of mass."""
     coordinate: Coordinate | None = None
     """The coordinate that the joint leaves free, or drives, as ``joints.csv`` tells it; None where there is none, or no
     single one."""

@@ -65,7 +65,7 @@ class ComponentDynamics:
 
     @property
     def resisted(self) -> bool:
-        """Whether drag acts on the motions in kicks too."""
+        """Tell whether drag acts on the motions in kicks too."""
         return self._motions.resisted
 
     @property

@@ -54,7 +54,7 @@ class CarriedKinematics:
         return np.swapaxes(carried_sum(self.carrier, np.swapaxes(whole, 0, 1), len(self.centre)), 0, 1)
 
     def has_prescribed_part(self, prescribed: BoolArray, twist: Twist) -> BoolArray:
-        """Whether the prescribed part is not zero, be it by a prescribed motion or by relative motion."""
+        """Tell whether the prescribed part is not zero, be it by a prescribed motion or by relative motion."""
         return np.asarray(np.any(twist.velocity, axis=1) | np.any(twist.angular_velocity, axis=1))
 
     def body_rates(self, rate: FloatArray, motion: Twist, relative_rate: FloatArray) -> FloatArray:

@@ -113,6 +113,6 @@ def twist_arms(system: System) -> FloatArray:
 
 
 def round_motions(system: System) -> BoolArray:
-    """Whether a motion is that of a single ball, which turns in its place (N,)."""
+    """Tell whether a motion is that of a single ball, which turns in its place (N,)."""
     count = np.bincount(system.motions.carrier)
     return np.asarray((system.motions.sums(system.balls.astype(float)) == 1) & (count == 1))

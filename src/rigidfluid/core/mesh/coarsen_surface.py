@@ -84,7 +84,7 @@ def _short_edges(
 
 
 def _can_collapse(mesh: Mesh, pairs: IntArray, wanted: FloatArray) -> BoolArray:
-    """Whether each of the ``pairs`` (E, 2), which change no cell twice, can be collapsed, (E,); edges are to be
+    """Tell whether each of the ``pairs`` (E, 2), which change no cell twice, can be collapsed, (E,); edges are to be
     ``wanted`` (E,) long."""
     pair_of = np.full(len(mesh.points), -1)
     pair_of[pairs[:, 0]] = np.arange(len(pairs))
@@ -134,7 +134,7 @@ def _changed(simplices: IntArray, pair_of: IntArray) -> tuple[IntArray, IntArray
 
 
 def _degenerate(simplices: IntArray) -> BoolArray:
-    """Whether each simplex has a vertex twice, (M,)."""
+    """Tell whether each simplex has a vertex twice, (M,)."""
     ordered = np.sort(simplices, axis=1)
     return np.asarray((ordered[:, 1:] == ordered[:, :-1]).any(axis=1))
 

@@ -16,8 +16,8 @@ MOST_COARSENED = 1.4
 
 
 def has_coarsened(made: FloatArray, now: FloatArray, ranks: Ranks) -> bool:
-    """Whether r > MOST_COARSENED · max(r₀, 1) in a cell of the whole mesh, r the cell's relative size ``now`` (M,), r₀
-    when ``made`` (M,) [1].
+    """Tell whether r > MOST_COARSENED · max(r₀, 1) in a cell of the whole mesh, r the cell's relative size ``now``
+    (M,), r₀ when ``made`` (M,) [1].
 
     A mesh just made has r = r₀, so it never asks for another at once.
     """
@@ -34,7 +34,7 @@ def relative_sizes(points: FloatArray, cells: IntArray, fluid_domain: FluidDomai
 
 
 def is_due(reference: Pose, before: Pose, after: Pose, sizes: Sizes) -> bool:
-    """Whether it is time to look: bodies have gone another size_body/growth from their ``reference`` pose.
+    """Tell whether it is time to look: bodies have gone another size_body/growth from their ``reference`` pose.
 
     So far the size wanted next to a body doubles. It depends on poses alone, so that nothing need be remembered.
     """

@@ -85,7 +85,7 @@ def _chosen(curved: CurvedEdges, kept: IntArray) -> CurvedEdges | None:
 
 
 def _on_others(mesh: Mesh, edges: IntArray, surface: IntArray) -> BoolArray:
-    """Whether each edge (E, 2) is also on facets of other surfaces than the ``surface`` (E,) it is listed for, (E,)."""
+    """Tell whether each edge (E, 2) is also on facets of surfaces other than its own, ``surface`` (E,); (E,)."""
     shared = np.zeros(len(edges), dtype=bool)
     if mesh.points.shape[1] == 2:
         return shared  # an edge is a facet

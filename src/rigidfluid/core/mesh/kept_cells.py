@@ -22,7 +22,7 @@ SHORTEST, LONGEST = 0.5, 1.4
 
 
 def kept_cells(mesh: Mesh, bodies: int, size_at: Callable[[FloatArray], FloatArray], layers: int) -> BoolArray:
-    """Whether each cell (M,) is in one of the ``layers`` next to a body, of good quality and about as large as wanted.
+    """Tell whether each cell (M,) is in one of the ``layers`` next to a body, well shaped and about as large as wanted.
 
     ``size_at(points)`` is the wanted size (N,) [length].
     """

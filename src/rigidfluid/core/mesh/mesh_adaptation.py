@@ -139,7 +139,7 @@ class MeshUpdater:
         )
 
     def _is_asked_for(self, state: State, pose: Pose) -> bool:
-        """Whether the rule of re-meshing, which may be the caller's, says so; raises StepError where it says
+        """Tell whether the rule of re-meshing, which may be the caller's, says so; raises StepError where it says
         neither."""
         answer = self.needs_remesh(state, pose)
         if not isinstance(answer, bool | np.bool_):
@@ -171,14 +171,14 @@ class MeshUpdater:
         return with_curved_edges(mesh, fluid_domain)
 
     def _waits(self, reference: Reference, state: State, pose: Pose) -> bool:
-        """Whether a mesh that could not be made shortly before is not worth another try."""
+        """Tell whether a mesh that could not be made shortly before is not worth another try."""
         failed = state.remesh_failed
         if failed is None or state.tick >= failed.tick + self._renewal.pause:
             return False
         return state.tick == failed.tick or self._placed(reference, pose)[1] >= NEARLY_TANGLED
 
     def is_worn(self, state: State, pose: Pose) -> bool:
-        """Whether the mesh is old, a gap has changed since it was made, or a step to ``pose`` spoils a cell."""
+        """Tell whether the mesh is old, a gap has changed since it was made, or a step to ``pose`` spoils a cell."""
         reference, sizes = state.reference, self._sizes
         if state.tick >= reference.tick + self._renewal.oldest:
             return True
@@ -262,7 +262,7 @@ def worst_quality(mesh: Mesh, curved: CurvedCells, geometry: FloatArray) -> floa
 
 
 def _gap_changed(before: FloatArray, now: FloatArray, sizes: Sizes) -> BoolArray:
-    """Whether each gap that the mesh must resolve has halved, or opened to four times, since the mesh was made,
+    """Tell whether each gap that the mesh must resolve has halved, or opened to four times, since the mesh was made,
     (n,)."""
     finest, coarsest = sizes.cells_per_gap * sizes.smallest, 2.0 * sizes.cells_per_gap * sizes.size_body
     ratio = np.clip(now, finest, coarsest) / np.clip(before, finest, coarsest)

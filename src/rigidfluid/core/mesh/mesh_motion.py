@@ -94,8 +94,8 @@ class MeshMotion:
 
 
 def held_components(mesh: Mesh, bodies: int, domain: Domain) -> BoolArray:
-    """Whether each component of the displacement is prescribed, (N, d): the normal one on a flat surface of the domain
-    that lies across an axis and is not periodic, all on other surfaces and on bodies."""
+    """Tell whether each component of the displacement is prescribed, (N, d): the normal one on a flat surface of the
+    domain that lies across an axis and is not periodic, all on other surfaces and on bodies."""
     planes = [None] * bodies + [piece.shape.plane for piece in domain.pieces]
     held = np.zeros(mesh.points.shape, dtype=bool)
     for surface, plane in enumerate(planes):

@@ -19,7 +19,7 @@ beforehand. It was measured as the resident memory at the most over that before 
 
 
 class Kept(NamedTuple):
-    """Whether MMG has to keep each of the ``facets`` (F,) and ``cells`` (M,) of a mesh."""
+    """Tell whether MMG has to keep each of the ``facets`` (F,) and ``cells`` (M,) of a mesh."""
 
     facets: BoolArray
     cells: BoolArray

@@ -49,7 +49,7 @@ def with_exact_images(mesh: Mesh, bodies: int, domain: Domain) -> Mesh:
 
 
 def on_periodic_surfaces(mesh: Mesh, bodies: int, domain: Domain) -> BoolArray:
-    """Whether each facet is on a periodic surface, whose mesh stays that of its image, (F,)."""
+    """Tell whether each facet is on a periodic surface, whose mesh stays that of its image, (F,)."""
     return np.isin(mesh.markers - bodies, [piece for pair in domain.periodic for piece in pair])
 
 

@@ -84,8 +84,8 @@ def middles_on_surfaces(mesh: Mesh, edges: IntArray, fluid_domain: FluidDomain) 
 
 
 def on_kept_surfaces(mesh: Mesh, fluid_domain: FluidDomain) -> BoolArray:
-    """Whether each facet lies on a body or on a surface of the domain that is not flat, or periodic, and that MMG must
-    not move, (F,)."""
+    """Tell whether each facet lies on a body or on a surface of the domain that is not flat, or periodic, and that MMG
+    must not move, (F,)."""
     bodies, domain = len(fluid_domain.bodies), fluid_domain.domain
     kept = [True] * bodies + [piece.shape.plane is None for piece in domain.pieces]
     return np.array(kept)[mesh.markers] | on_periodic_surfaces(mesh, bodies, domain)
@@ -102,7 +102,7 @@ def edges_of_facets(mesh: Mesh, chosen: BoolArray) -> tuple[IntArray, IntArray]:
 
 
 def one_per_cell(cells: IntArray, edges: IntArray, length: FloatArray, vertices: int) -> BoolArray:
-    """Whether each edge is bisected now, (E,): if it is the longest of the given ones in every cell it belongs to."""
+    """Tell whether each edge is bisected now, (E,): if it is the longest of the given ones in each of its cells."""
     rank = np.empty(len(edges), dtype=np.int64)
     rank[np.argsort(significant(length), kind="stable")] = np.arange(len(edges))
     highest = np.full(len(cells), -1)
@@ -116,7 +116,7 @@ def one_per_cell(cells: IntArray, edges: IntArray, length: FloatArray, vertices:
 
 
 def spares_cells(mesh: Mesh, edges: IntArray, middles: FloatArray) -> BoolArray:
-    """Whether each of ``edges`` (E, 2), of which no cell has two, can be bisected with all cells above FLAT, (E,)."""
+    """Tell whether each of ``edges`` (E, 2), no two in one cell, can be bisected with all cells above FLAT, (E,)."""
     cells, _ = halved(mesh.cells, edges, len(mesh.points))
     cut = cells[cells.max(axis=1) >= len(mesh.points)]
     flat = cell_quality(np.concatenate([mesh.points, middles]), cut) <= FLAT

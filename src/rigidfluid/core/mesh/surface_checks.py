@@ -78,7 +78,7 @@ def _refuse_crossing(surface: Mesh, names: Sequence[str]) -> None:
 
 
 def _overlaps_ball(number: int, fluid_domain: FluidDomain) -> BoolArray:
-    """Whether each other body's bounding ball overlaps that of one, (n,)."""
+    """Tell whether each other body's bounding ball overlaps that of one, (n,)."""
     position = fluid_domain.pose.position
     radii = np.array([body.bounding_radius for body in fluid_domain.bodies])
     distance = np.linalg.norm(position - position[number], axis=1)

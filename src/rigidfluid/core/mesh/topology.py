@@ -43,8 +43,8 @@ def orient(mesh: Mesh) -> Mesh:
 
 
 def share_no_cell(cells: IntArray, chosen: IntArray, vertices: int) -> BoolArray:
-    """Whether each of the ``chosen`` vertices is the first of them in all its cells, (E,), so that no cell has two with
-    True; ``vertices`` is the number of all."""
+    """Tell whether each of the ``chosen`` vertices is the first of them in all its cells, (E,), so that no cell has two
+    with True; ``vertices`` is the number of all."""
     rank = np.full(vertices, len(chosen))
     np.minimum.at(rank, chosen, np.arange(len(chosen)))
     least = rank[cells].min(axis=1)

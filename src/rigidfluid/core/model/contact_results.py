@@ -65,7 +65,7 @@ def _are_few(contacts: Contacts) -> bool:
 
 
 def _may_be_corners(a: int, b: int, bodies: Sequence[Surface], walls: Sequence[Wall]) -> bool:
-    """Whether both surfaces have corners: two that face each other are one contact for each, as they are a little
+    """Tell whether both surfaces have corners: two that face each other are one contact for each, as they are a little
     beside each other."""
     other = bodies[b] if b < len(bodies) else next(wall.shape for wall in walls if wall.surface == b)
     return all(getattr(shape, "facets", None) is not None for shape in (bodies[a], other))

@@ -37,7 +37,7 @@ class Detection(ABC):
     """Detection of a system's contacts, by the bodies' poses alone or on the fluid's mesh."""
 
     on_mesh: ClassVar[bool]
-    """Whether it looks at the fluid's mesh, and finds nothing without one."""
+    """Tell whether it looks at the fluid's mesh, and finds nothing without one."""
 
     @staticmethod
     @abstractmethod
@@ -66,5 +66,5 @@ class Detection(ABC):
 
     @abstractmethod
     def has_missed(self, seen: Contacts, found: Contacts) -> bool:
-        """Whether a contact ``found`` in range at the end of a step was neither ``seen`` at its start nor on the
+        """Tell whether a contact ``found`` in range at the end of a step was neither ``seen`` at its start nor on the
         way."""

@@ -34,7 +34,7 @@ class Detector(Part):
     bodies: tuple[Body, ...]
     walls: tuple[Wall, ...]
     needs_mesh: ClassVar[bool] = False
-    """Whether it looks at the fluid's mesh; then it is never asked without one."""
+    """Tell whether it looks at the fluid's mesh; then it is never asked without one."""
     cost: ClassVar[float] = math.inf
     """Time for a near pair over that of `sphere` for two balls [1]; ``auto`` takes the cheapest that is exact."""
 

@@ -60,7 +60,7 @@ class Domain(SpatialPart):
     @abstractmethod
     @gives(parts.truths)
     def contains(self, points: FloatArray) -> BoolArray:
-        """Whether each of ``points`` (N, d) is inside, (N,); on the boundary either may be said."""
+        """Tell whether each of ``points`` (N, d) is inside, (N,); on the boundary either may be said."""
 
     @gives(anything)
     def cad_shape(self, unit: float) -> Any:

@@ -69,7 +69,7 @@ class BodyDynamics(Protocol):
 
     @property
     def resisted(self) -> bool:
-        """Whether drag acts in kicks too: the work of a force is then its product with the displacement in drifts
+        """Tell whether drag acts in kicks too: the work of a force is then its product with the displacement in drifts
         alone."""
 
     @property

@@ -36,17 +36,17 @@ class FluidBackend(Part):
 
     kind: ClassVar[str] = "fluid backend"
     wet: ClassVar[bool] = True
-    """Whether there is a fluid around the bodies, on a mesh; else it gets meshes without cells."""
+    """Tell whether there is a fluid around the bodies, on a mesh; else it gets meshes without cells."""
     materials: ClassVar[tuple[type[Material], ...]] = (Newtonian,)
     """Materials that it solves for."""
     curved_cells: ClassVar[bool] = False
-    """Whether it takes meshes with curved edges; else it gets straight ones."""
+    """Tell whether it takes meshes with curved edges; else it gets straight ones."""
     initial_flows: ClassVar[bool] = False
-    """Whether it can start with another `FluidProblem.initial` than rest; else such scenes are refused."""
+    """Tell whether it can start with another `FluidProblem.initial` than rest; else such scenes are refused."""
     oblique_faces: ClassVar[bool] = False
-    """Whether it takes slip and pressure conditions on faces that lie across no axis."""
+    """Tell whether it takes slip and pressure conditions on faces that lie across no axis."""
     periodic_faces: ClassVar[bool] = False
-    """Whether it takes periodic conditions."""
+    """Tell whether it takes periodic conditions."""
     state_format: ClassVar[str | None] = None
     """Name of the format of its state. Backends of one format resume each other's runs, and by `joined` and `cut` those
     of other numbers of ranks; None where neither can be."""

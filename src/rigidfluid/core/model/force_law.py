@@ -34,12 +34,12 @@ class ForceLaw(Part):
     range: float
     balls_only: ClassVar[bool] = False
     film: bool = False
-    """Whether it resists as a film that no mesh resolves: it reads `Contacts.effective_radius`, which balls, ellipses
-    and ellipsoids have."""
+    """Tell whether it resists as a film that no mesh resolves: it reads `Contacts.effective_radius`, which balls,
+    ellipses and ellipsoids have."""
     conservative: bool = True
-    """Whether it has an energy; else force, energy and stiffness are zero."""
+    """Tell whether it has an energy; else force, energy and stiffness are zero."""
     dissipative: bool = False
-    """Whether it has damping; else damping is zero."""
+    """Tell whether it has damping; else damping is zero."""
     overlap: Literal["repels", "attracts", "unbounded"] = "repels"
     """Behaviour of the energy's force at gap < 0; unbounded: the energy is infinite, and force and stiffness raise
     StepRejected."""

@@ -33,7 +33,7 @@ class Interaction:
     smallest_gap: float | None = None
 
     def acts_in(self, contacts: Contacts) -> BoolArray:
-        """Whether each contact is its own, whatever the gap, (m,)."""
+        """Tell whether each contact is its own, whatever the gap, (m,)."""
         chosen = np.ones(len(contacts), dtype=bool)
         if self.between != "all":
             chosen &= contacts.at_wall == (self.between == "walls")
@@ -43,7 +43,7 @@ class Interaction:
 
 
 def acted_in(interactions: Sequence[Interaction], contacts: Contacts) -> BoolArray:
-    """Whether any of the interactions acts in each contact, (m,)."""
+    """Tell whether any of the interactions acts in each contact, (m,)."""
     each = [interaction.acts_in(contacts) for interaction in interactions]
     return np.asarray(np.any(each, axis=0), dtype=bool) if each else np.zeros(len(contacts), dtype=bool)
 

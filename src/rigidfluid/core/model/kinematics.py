@@ -34,8 +34,8 @@ class Kinematics(Protocol):
         """Rows C G (c, N, d+k) on the motions of rows C (c, n, d+k) on the bodies."""
 
     def has_prescribed_part(self, prescribed: BoolArray, twist: Twist) -> BoolArray:
-        """Whether a body has a prescribed part of its twist (n,), given that ``twist`` and the motions ``prescribed``
-        (N,)."""
+        """Tell whether a body has a prescribed part of its twist (n,), given that ``twist`` and the motions
+        ``prescribed`` (N,)."""
 
     def body_rates(self, rate: FloatArray, motion: Twist, relative_rate: FloatArray) -> FloatArray:
         """Accelerations of the bodies (n, d+k) by the ``rate`` (N, d+k) of the motions' twists, these twists, and the

@@ -40,7 +40,7 @@ class Mechanism(SpatialPart):
 
     kind: ClassVar[str] = "mechanism"
     driven: bool = False
-    """Whether the placement changes with time; else it is asked for once."""
+    """Tell whether the placement changes with time; else it is asked for once."""
 
     @property
     @abstractmethod

@@ -31,7 +31,7 @@ class Ranks(ABC):
 
     @property
     def is_root(self) -> bool:
-        """Whether this process meshes, and writes what is there once."""
+        """Tell whether this process meshes, and writes what is there once."""
         return self.rank == ROOT
 
     def interrupt(self) -> None:

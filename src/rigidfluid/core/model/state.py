@@ -91,7 +91,7 @@ class ErrorEstimate:
 
     @property
     def is_unknown(self) -> bool:
-        """Whether there are too few steps yet."""
+        """Tell whether there are too few steps yet."""
         return math.isinf(self.error)
 
     @property
@@ -153,7 +153,7 @@ class State:
 
     @property
     def is_on_new_mesh(self) -> bool:
-        """Whether its mesh was made for it."""
+        """Tell whether its mesh was made for it."""
         return self.reference.tick == self.tick
 
     @property

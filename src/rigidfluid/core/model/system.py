@@ -86,12 +86,12 @@ class System:
 
     @property
     def quasi_steady(self) -> bool:
-        """Whether there is a fluid without inertia: it answers to the velocities of the moment, and remembers none."""
+        """Tell whether there is a fluid without inertia: it answers to the present velocities, and remembers none."""
         return self.fluid is not None and not self.fluid.inertia
 
     @property
     def has_fluid(self) -> bool:
-        """Whether there is a fluid around the bodies."""
+        """Tell whether there is a fluid around the bodies."""
         return self.fluid is not None
 
     @property
@@ -110,7 +110,7 @@ class System:
 
     @cached_property
     def balls(self) -> BoolArray:
-        """Whether each body is a ball (n,)."""
+        """Tell whether each body is a ball (n,)."""
         return np.array([body.radius is not None for body in self.bodies], dtype=bool)
 
     @cached_property

@@ -98,7 +98,7 @@ def clear(out: Path, product: Product) -> None:
 
 
 def _is_marked(out: Path, product: Product) -> bool:
-    """Whether the folder has the product's mark; raises OutputError for another file of that name."""
+    """Tell whether the folder has the product's mark; raises OutputError for another file of that name."""
     mark = out / product.mark
     if not mark.exists():
         return False
@@ -142,7 +142,7 @@ def _signature(product: Product) -> str:
 
 
 def _lock(file: IO[Any]) -> bool:
-    """Whether nobody else holds it; true also where there are no such locks: on Windows, and on some network disks."""
+    """Tell whether nobody else holds it; true also where no such locks exist: on Windows, and on some network disks."""
     if sys.platform == "win32":
         return True
     import fcntl

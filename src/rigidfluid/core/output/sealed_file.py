@@ -18,12 +18,12 @@ def seal(image: io.BytesIO) -> None:
 
 
 def is_sealed(data: bytes) -> bool:
-    """Whether a file begins with a digest, right or wrong."""
+    """Tell whether a file begins with a digest, right or wrong."""
     return data.startswith(_NAME)
 
 
 def is_intact(data: bytes) -> bool:
-    """Whether a sealed file is to the last bit as it was written."""
+    """Tell whether a sealed file is to the last bit as it was written."""
     return data[:BLOCK] == (_NAME + _digest(memoryview(data)[BLOCK:])).ljust(BLOCK, b"\0")
 
 

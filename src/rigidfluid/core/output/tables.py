@@ -38,7 +38,7 @@ class Prefix:
         return Prefix(self.length + len(data), crc32(data, self.crc))
 
     def begins(self, path: Path) -> bool:
-        """Whether a file begins so."""
+        """Tell whether a file begins so."""
         return not self._found(path)
 
     def require(self, path: Path) -> None:

@@ -165,7 +165,7 @@ class Writer:
 
     @contextmanager
     def _writing_once(self, path: Path) -> Iterator[bool]:
-        """Whether this rank writes a file shared by all ranks; a failure raises on all."""
+        """Tell whether this rank writes a file shared by all ranks; a failure raises on all."""
         with self._ranks.raise_on_all(), writing(path):
             yield self._ranks.is_root
 
@@ -180,7 +180,7 @@ def _taken(out: Path, new: bool) -> TextIO:
 
 
 def has_checkpoint(out: Path) -> bool:
-    """Whether there is a checkpoint in a folder; raises OutputError where no folder can have that name."""
+    """Tell whether there is a checkpoint in a folder; raises OutputError where no folder can have that name."""
     with writing(out):
         return (out / CHECKPOINT).exists()
 

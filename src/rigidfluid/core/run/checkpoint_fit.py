@@ -1,4 +1,4 @@
-"""Whether a checkpoint is one of this model: as many bodies, motions and links, its surfaces, times and tables."""
+"""Check that a checkpoint is one of this model: as many bodies, motions and links, its surfaces, times and tables."""
 
 from __future__ import annotations
 

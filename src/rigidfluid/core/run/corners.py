@@ -41,7 +41,7 @@ def restarted(system: System, scheme: Scheme, clock: Clock, state: State) -> Sta
 
 
 def _is_corner(system: System, clock: Clock, tick: int) -> bool:
-    """Whether there is one at this tick; a start is none."""
+    """Tell whether there is one at this tick; a start is none."""
     return tick > 0 and _corner_after(system, clock, tick - 1) == tick
 
 

@@ -38,16 +38,16 @@ def _cause(system: System, clock: Clock, state: State, candidate: State) -> Caus
 
 
 def _is_remeshed(clock: Clock, state: State) -> bool:
-    """Whether the state or the one before was carried to a new mesh: BDF2 differences both."""
+    """Tell whether the state or the one before was carried to a new mesh: BDF2 differences both."""
     if state.reference.tick == 0 or state.level is None:
         return False
     return state.reference.tick >= state.tick - clock.ticks(state.level)
 
 
 def _is_impact(system: System, clock: Clock, state: State, candidate: State) -> bool:
-    """Whether the only contacts begin or end, contacts change at once by more energy than the step leaves over, or an
-    impact goes on in which they store or give back more than that. Contacts that push all the time and yield slowly are
-    none."""
+    """Tell whether the only contacts begin or end, contacts change at once by more energy than the step leaves over, or
+    an impact goes on in which they store or give back more than that. Contacts that push all the time and yield slowly
+    are none."""
     before, after = state.ledger, candidate.ledger
     grown = abs(after.residual - before.residual)
     if (before.contact == 0.0) != (after.contact == 0.0):

@@ -20,7 +20,7 @@ _LEAST_AGE = 4
 
 
 def is_unresolved(state: State, path: BodyStep, level: int) -> bool:
-    """Whether a step of this ``level`` is to be halved, for the energy that an impact on its ``path`` would lose.
+    """Tell whether a step of this ``level`` is to be halved, for the energy that an impact on its ``path`` would lose.
 
     Halvings count from the nominal step, or with a tolerance from the latest step without an impact.
     """

@@ -71,7 +71,7 @@ def _with_flow(system: System, clock: Clock, state: State) -> State:
 
 
 def _faces_start_at_once(system: System, state: State) -> bool:
-    """Whether faces drive a fluid at once that was at rest."""
+    """Tell whether faces drive a fluid at once that was at rest."""
     problem = system.fluid
     if problem is None or problem.initial != "rest":
         return False
@@ -86,7 +86,7 @@ def _power(system: System, state: State, faces: bool) -> Power | None:
 
 
 def _starts_at_once(system: System, state: State, faces: bool) -> bool:
-    """Whether the motion does not start smoothly.
+    """Tell whether the motion does not start smoothly.
 
     Bodies or faces that start with a velocity set the fluid in motion at once, but for a layer on them that spreads
     fast; so do contacts that let go, weight where the fluid has no inertia, and a flow that is given past bodies that

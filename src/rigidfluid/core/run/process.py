@@ -127,7 +127,7 @@ def remembered_interrupt(ranks: Ranks) -> Iterator[Callable[[], None]]:
 
 
 def _is_compiling(frame: FrameType | None) -> bool:
-    """Whether numba compiles or loads a loop in a ``frame`` or one that has called it."""
+    """Tell whether numba compiles or loads a loop in a ``frame`` or one that has called it."""
     while frame is not None:
         if frame.f_globals.get("__name__") == "numba.core.dispatcher":
             return True

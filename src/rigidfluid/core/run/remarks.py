@@ -23,8 +23,8 @@ class Remark:
 
 
 def layer_remarks(system: System, highest_speed: FloatArray, size_body: float | None) -> list[Remark]:
-    """Whether fewer than two cells lay across the thinnest boundary layer, by the ``highest_speed`` (n,) that bodies
-    had [length/time], or the flow given past them; none in Stokes flow, and without a fluid, where there is no
+    """Remark if fewer than two cells lay across the thinnest boundary layer, by the ``highest_speed`` (n,) that bodies
+    had [length/time], or the flow given past them; no remark in Stokes flow, nor without a fluid, where there is no
     ``size_body`` [length]."""
     problem = system.fluid
     if size_body is None or problem is None or not problem.inertia:

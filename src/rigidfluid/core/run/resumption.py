@@ -85,7 +85,7 @@ def _refuse_changed_files(checkpoint: Checkpoint, now: Mapping[str, str]) -> Non
 
 
 def _is_of_another(backend: FluidBackend, name: object) -> bool:
-    """Whether a backend of this name is another one that writes the same states."""
+    """Tell whether a backend of this name is another one that writes the same states."""
     if name == backend.name or backend.state_format is None or not isinstance(name, str):
         return False
     before = Registry.load().find(FLUID_BACKEND, name)

@@ -18,7 +18,7 @@ class Schedule:
         self._clock, self._every, self.latest = clock, every, latest
 
     def due(self, tick: int) -> bool:
-        """Whether it is due in the state at this ``tick``."""
+        """Tell whether it is due in the state at this ``tick``."""
         if self._every is None:
             return True
         number = math.floor(self.latest / self._every + 1e-9)

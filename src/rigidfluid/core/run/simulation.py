@@ -131,7 +131,7 @@ class Simulation(Described):
 
     @property
     def alone(self) -> bool:
-        """Whether no other process shares the run."""
+        """Tell whether no other process shares the run."""
         return self._ranks.size == 1
 
     @property
@@ -151,7 +151,7 @@ class Simulation(Described):
 
     @property
     def ended(self) -> bool:
-        """Whether the scene's end is reached."""
+        """Tell whether the scene's end is reached."""
         return self.state.tick >= self.clock.last_tick
 
     @property

@@ -217,7 +217,7 @@ class Stepper:
         return int(level)
 
     def _changes_gaps_too_fast(self, state: State, pose: Pose) -> bool:
-        """Whether the mesh in a gap would be squeezed, or a film opened, by more than a step can follow."""
+        """Tell whether the mesh in a gap would be squeezed, or a film opened, by more than a step can follow."""
         with self._watch("detect"):
             return self.scheme.changes_gaps_too_fast(state, pose, partial(self._mesh_updater.deform, state))
 

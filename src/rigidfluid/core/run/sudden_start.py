@@ -19,14 +19,14 @@ VANISHING = 1e-3
 
 
 def faces_start_at_once(problem: FluidProblem, mesh: Mesh) -> bool:
-    """Whether faces give the fluid a velocity at time 0; without inertia pressures do so too."""
+    """Tell whether faces give the fluid a velocity at time 0; without inertia pressures do so too."""
     with mesh.ranks.raise_on_all():
         found = any(_drives_at_once(condition, problem.inertia, mesh) for condition in problem.conditions)
     return bool(mesh.ranks.greatest(found))
 
 
 def _drives_at_once(condition: BoundaryCondition, inertia: bool, mesh: Mesh) -> bool:
-    """Whether a condition is not zero at time 0, at vertices and centres of its facets."""
+    """Tell whether a condition is not zero at time 0, at vertices and centres of its facets."""
     corners = mesh.points[mesh.facets[mesh.markers == condition.surface]]
     points = np.concatenate([*corners.swapaxes(0, 1), corners.mean(axis=1)])
     driven = condition.velocity(0.0, points).any()

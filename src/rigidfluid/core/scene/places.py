@@ -85,7 +85,7 @@ def _is_within(subject: str, key: str) -> bool:
 
 
 def _has(lines: Sequence[str], keys: Sequence[str]) -> bool:
-    """Whether a text, down to its last line that ends a value or an entry of a list, has the keys."""
+    """Tell whether a text, down to its last line that ends a value or an entry of a list, has the keys."""
     for last in range(len(lines), 0, -1):
         for closing in _CLOSINGS:
             try:

@@ -79,7 +79,7 @@ class BoundaryData:
 
     @property
     def is_steady(self) -> bool:
-        """Whether it is the same at all times."""
+        """Tell whether it is the same at all times."""
         return self.factor == UNCHANGED and "t" not in self.value.names
 
 
@@ -100,7 +100,7 @@ class BoundaryVelocity(BoundaryData):
 
     @property
     def is_uniform(self) -> bool:
-        """Whether it is the same everywhere on its surface."""
+        """Tell whether it is the same everywhere on its surface."""
         return self.profile is None and not self.value.names & {"x", "y", "z"}
 
 

@@ -108,7 +108,7 @@ def told_apart(laws: Sequence[ContactLaw]) -> tuple[ContactLaw, ...]:
 
 
 def has_own_restitution(law: type[ForceLaw]) -> bool:
-    """Whether the restitution is an option of the law itself."""
+    """Tell whether the restitution is an option of the law itself."""
     return "restitution" in law.Options.model_fields
 
 

@@ -162,7 +162,7 @@ class Model(Arrangement, Described):
 
     @property
     def wet(self) -> bool:
-        """Whether there is a fluid around the bodies, on a mesh."""
+        """Tell whether there is a fluid around the bodies, on a mesh."""
         return self.fluid.backend.part.wet
 
     @cached_property
@@ -172,7 +172,7 @@ class Model(Arrangement, Described):
 
     @property
     def prescribed(self) -> BoolArray:
-        """Whether the motion of each body is prescribed (n,)."""
+        """Tell whether the motion of each body is prescribed (n,)."""
         return np.array([body.is_prescribed for body in self.all_bodies], dtype=bool)
 
     @property

@@ -12,7 +12,7 @@ _APART = 1e-12
 
 
 def is_opposite(domain: Domain, piece: Piece, other: Piece) -> bool:
-    """Whether two pieces are flat, face each other, and are equal but for a displacement across them."""
+    """Tell whether two pieces are flat, face each other, and are equal but for a displacement across them."""
     one, two = piece.shape.plane, other.shape.plane
     if one is None or two is None or not np.allclose(one.unit_normal, -two.unit_normal, rtol=0, atol=_APART):
         return False

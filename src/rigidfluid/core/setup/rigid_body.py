@@ -90,12 +90,12 @@ class RigidBody(Start, _Shaped):
 
     @property
     def is_prescribed(self) -> bool:
-        """Whether its motion is prescribed; it is zero if fixed."""
+        """Tell whether its motion is prescribed; it is zero if fixed."""
         return self.fixed or self.prescribed is not None
 
     @property
     def linked_to_ground(self) -> bool:
-        """Whether directions of it are held, or springs pull it."""
+        """Tell whether directions of it are held, or springs pull it."""
         return self.free is not None or self.spring is not None
 
     @property

@@ -72,7 +72,7 @@ def _earlier(scene: Scene, folder: Path) -> Results | None:
 
 
 def _can_resume(scene: Scene, folder: Path) -> bool:
-    """Whether there is a checkpoint of the same scene, and all of the tables up to it."""
+    """Tell whether there is a checkpoint of the same scene, and all of the tables up to it."""
     try:
         checkpoint = earlier_run(folder, ALONE)
     except OutputError:

@@ -89,7 +89,7 @@ class Canvas:
             self.paint(shell.triangles @ turn.T + centre, values, lambda at: _lit(at, colour, stripe))
 
     def shows(self, points: FloatArray, slack: float) -> BoolArray:
-        """Whether nothing that is painted hides each of ``points`` (…, 3) by more than ``slack`` [length]."""
+        """Tell whether nothing that is painted hides each of ``points`` (…, 3) by more than ``slack`` [length]."""
         i, j = np.moveaxis(self.grid.coordinates(points).round().astype(int), -1, 0)
         depth = self.depth[np.clip(j, 0, self.grid.rows - 1), np.clip(i, 0, self.grid.columns - 1)]
         return np.asarray(points @ self.grid.plane.normal > depth - slack)

@@ -14,12 +14,12 @@ _GROWTH = 1.5
 
 
 def late(time: FloatArray) -> FloatArray:
-    """Whether a time (s,) is in the second half, where what started has most often settled."""
+    """Tell whether a time (s,) is in the second half, where what started has most often settled."""
     return np.asarray(time >= 0.5 * (time[0] + time[-1]))
 
 
 def late_periods(time: FloatArray, frequency: float) -> FloatArray:
-    """Whether a time (s,) is in the whole periods that the second half of the time ends with."""
+    """Tell whether a time (s,) is in the whole periods that the second half of the time ends with."""
     count = np.floor(0.5 * (time[-1] - time[0]) * frequency)
     return np.asarray(time >= time[-1] - count / frequency)
 

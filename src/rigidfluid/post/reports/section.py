@@ -35,7 +35,7 @@ class Section:
 
     @property
     def is_slice(self) -> bool:
-        """Whether the fields are in 3D."""
+        """Tell whether the fields are in 3D."""
         return bool(self.fields.points.shape[1] == 3)
 
     @cached_property

@@ -87,7 +87,7 @@ class Results:
 
     @property
     def is_relative(self) -> bool:
-        """Whether errors are divided by the reference: if asked for, and if none is 0."""
+        """Tell whether errors are divided by the reference: if asked for, and if none is 0."""
         return self.target.relative and 0 not in self.references.values()
 
     @cached_property

@@ -23,7 +23,7 @@ class Kernel(BaseModel, ABC):
     against: ClassVar[str]
 
     def reads(self, knob: str) -> bool:
-        """Whether a knob, by its dotted key, changes anything, given the values of the others."""
+        """Tell whether a knob, by its dotted key, changes anything, given the values of the others."""
         return True
 
     @abstractmethod
