@@ -7,9 +7,11 @@ from functools import singledispatch
 from typing import TYPE_CHECKING
 
 from rigidfluid.core.case.time_factor import rows_over_time
+from rigidfluid.core.geometry.piece import all_names
 from rigidfluid.core.nested.rows import check_rows
 from rigidfluid.core.scene.all_errors import all_told, raise_all
 from rigidfluid.core.scene.boundary_tables import BoundaryTable, VelocityTable, WallTable
+from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
@@ -29,13 +31,13 @@ def check_boundary_tables(tables: Sequence[BoundaryTable], domain: Domain, end: 
 
 def check_surface_names(tables: Sequence[BoundaryTable], domain: Domain) -> None:
     """Refuse, with SceneError, unknown names of surfaces."""
-    known = {"all", *(name for piece in domain.pieces for name in piece.all_names)}
-    allowed = f"all, {domain.names_in_words}"
-    raise_all(
-        SceneError(f"boundary.{number}.on", repr(table.on), allowed, "Name a surface of the domain.")
-        for number, table in enumerate(tables)
-        if table.on not in known
-    )
+    known = ["all", *all_names(domain.pieces)]
+    raise_all(_unknown(f"boundary.{n}.on", table.on, domain) for n, table in enumerate(tables) if table.on not in known)
+
+
+def _unknown(field: str, name: str, domain: Domain) -> SceneError:
+    remedy = suggestion(name, all_names(domain.pieces)) or "Name a surface of the domain."
+    return SceneError(field, repr(name), f"all, {domain.names_in_words}", remedy)
 
 
 @singledispatch

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import lru_cache, singledispatch
 from typing import NamedTuple
 
@@ -29,7 +28,7 @@ from rigidfluid.core.scene.contact_tables import ContactTable
 from rigidfluid.core.scene.domain_table import DomainTable
 from rigidfluid.core.scene.mesh_tables import AUTO
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.core.setup.contact_laws import ContactLaw
+from rigidfluid.core.setup.contact_laws import ContactLaw, told_apart
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.core.setup.made_bodies import check_made_bodies
 from rigidfluid.core.setup.model import ContactStepping, Model
@@ -128,7 +127,7 @@ def _compose(scene: Scene, registry: Registry, parts: _Parts) -> Model:
         boundary=condition_makers(scene.boundary, domain),
         mechanisms=mechanisms,
         joints=joints,
-        laws=tuple(_with_names_of(domain, law) for law in laws),
+        laws=told_apart(laws, domain.pieces),
         detector=detector,
         stepping=ContactStepping(
             scene.contact.substeps, scene.contact.stepping == "implicit", scene.contact.impact_speed
@@ -145,12 +144,6 @@ def _compose(scene: Scene, registry: Registry, parts: _Parts) -> Model:
 def _names_used(scene: Scene) -> set[str]:
     """Names of surfaces in the scene's tables."""
     return {table.on for table in scene.boundary} | {name for table in scene.interaction for name in table.names or ()}
-
-
-def _with_names_of(domain: Domain, law: ContactLaw) -> ContactLaw:
-    """The law with the domain's names of surfaces, where its table has other names of these."""
-    names = {name: piece.name for piece in domain.pieces for name in piece.all_names}
-    return replace(law, names=tuple(names.get(name, name) for name in law.names))
 
 
 def scene_domain(table: DomainTable, registry: Registry, dimension: int) -> Domain:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from rigidfluid.core.geometry.arrays import FloatArray
@@ -34,3 +34,8 @@ class Piece:
     def names_in_words(self) -> str:
         """Its names, for a message."""
         return " or ".join(self.all_names)
+
+
+def all_names(pieces: Iterable[Piece]) -> list[str]:
+    """Names and other names of ``pieces``, in their order."""
+    return [name for piece in pieces for name in piece.all_names]

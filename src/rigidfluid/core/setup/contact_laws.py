@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,6 +10,7 @@ from pydantic import Field
 
 from rigidfluid.core.contact.film_loss import FilmLoss
 from rigidfluid.core.contact.restitution import Restitution
+from rigidfluid.core.geometry.piece import Piece, all_names
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.interactions import Between, Interaction
 from rigidfluid.core.model.selected import Selected
@@ -44,7 +45,8 @@ class ContactLaw:
     between : str
         Contacts at `walls`, of `pairs` of bodies, or `all`.
     names : sequence of str
-        Bodies or walls: all contacts of one, or that of two with each other; any contacts if empty.
+        Bodies or walls, by either name of a wall: all contacts of one, or that of two with each other; any contacts if
+        empty.
     field : str, optional
         Key of the scene's table that asks for it, for messages; if not given, `contact` of a law alone, and of several
         `interaction.0` and so on.
@@ -101,10 +103,14 @@ class ContactLaw:
         return FilmLoss(self.restitution_stokes, loads.film, loads)
 
 
-def told_apart(laws: Sequence[ContactLaw]) -> tuple[ContactLaw, ...]:
-    """The laws of a model, each with its field."""
+def told_apart(laws: Sequence[ContactLaw], pieces: Iterable[Piece]) -> tuple[ContactLaw, ...]:
+    """The laws of a model, each with its field, and with names of ``pieces`` in the place of other names of these."""
     fields = ["contact"] if len(laws) == 1 else [f"interaction.{number}" for number in range(len(laws))]
-    return tuple(replace(law, field=law.field or field) for law, field in zip(laws, fields, strict=True))
+    own = {name: piece.name for piece in pieces for name in piece.all_names}
+    return tuple(
+        replace(law, field=law.field or field, names=tuple(own.get(name, name) for name in law.names))
+        for law, field in zip(laws, fields, strict=True)
+    )
 
 
 def has_own_restitution(law: type[ForceLaw]) -> bool:
@@ -127,8 +133,7 @@ def _check_names(model: Model, law: ContactLaw) -> None:
     bodies, walls = [body.name for body in model.all_bodies], [wall.name for wall in model.walls]
     for number, name in enumerate(law.names):
         if name not in (*bodies, *walls):
-            known = [*bodies, *(piece.names_in_words for piece in model.domain.pieces if piece.name in walls)]
-            raise _unknown(model, f"{law.field}.names.{number}", name, known)
+            raise _unknown(model, f"{law.field}.names.{number}", name)
     at_walls = any(name in walls for name in law.names)
     pair = len(law.names) == 2
     if pair and (len(set(law.names)) == 1 or all(name in walls for name in law.names)):
@@ -154,10 +159,13 @@ def _check_shapes(model: Model, law: ContactLaw) -> None:
         raise SceneError(f"{law.field}.law", found, "balls, ellipses and ellipsoids", remedy)
 
 
-def _unknown(model: Model, field: str, name: str, known: Sequence[str]) -> SceneError:
+def _unknown(model: Model, field: str, name: str) -> SceneError:
     open_face = "a surface that is no wall, and does not repel" if name in model.domain.names else "no surface"
+    bodies, repelling = [body.name for body in model.all_bodies], {wall.name for wall in model.walls}
+    walls = [piece for piece in model.domain.pieces if piece.name in repelling]
+    known = [*(piece.names_in_words for piece in walls), *bodies]
     shown = ", ".join(known[:20]) + (", …" if len(known) > 20 else "")
-    remedy = suggestion(name, known) or "Name a body or a wall."
+    remedy = suggestion(name, [*bodies, *all_names(walls)]) or "Name a body or a wall."
     return SceneError(field, f"{name!r}, {open_face}", f"one of {shown}", remedy)
 
 

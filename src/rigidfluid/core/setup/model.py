@@ -167,8 +167,8 @@ class Model(Arrangement, Described):
 
     @cached_property
     def named_laws(self) -> tuple[ContactLaw, ...]:
-        """The laws, each with the field that messages name it by."""
-        return told_apart(self.laws)
+        """The laws, each with the field that messages name it by and with the names of surfaces that results have."""
+        return told_apart(self.laws, self.domain.pieces)
 
     @property
     def prescribed(self) -> BoolArray:

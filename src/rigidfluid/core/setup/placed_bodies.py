@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from rigidfluid.core.contact.detector_choice import exact_detector
+from rigidfluid.core.geometry.piece import all_names
 from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.domain import Domain
@@ -74,8 +75,7 @@ def doubled(field: str, name: str) -> SceneError:
 
 def _doubled_names(placed: Arrangement) -> Iterator[SceneError]:
     names, wholes = [body.name for body in placed.all_bodies], [whole.name for whole in placed.mechanisms]
-    surfaces = [name for piece in placed.domain.pieces for name in piece.all_names]
-    for name, count in Counter([*names, *wholes, *surfaces]).items():
+    for name, count in Counter([*names, *wholes, *all_names(placed.domain.pieces)]).items():
         if count > 1:
             last = len(names) - 1 - names[::-1].index(name) if name in names else len(names)
             yield doubled(f"body.{last}.name" if last < len(placed.bodies) else "mechanism.name", name)

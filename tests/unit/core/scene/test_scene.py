@@ -556,6 +556,25 @@ def test_both_names_of_faces_are_told_where_another_is_refused(wrong: dict[str, 
         scene_from_dict(in_3d(**wrong))
 
 
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"boundary": [{"on": "zmim", "type": "wall"}]},
+        {"interaction": [{"law": "barrier", "range": 0.1, "epsilon": 1.0, "names": ["zmim"]}]},
+    ],
+)
+def test_the_nearest_name_of_a_face_is_suggested(wrong: dict[str, Any]) -> None:
+    with pytest.raises(SceneError, match=r"Did you mean 'zmin'\?"):
+        scene_from_dict(in_3d(**wrong))
+
+
+def test_walls_are_told_before_many_bodies() -> None:
+    law = {"law": "barrier", "range": 0.1, "epsilon": 1.0, "names": ["nix"]}
+    row = [SECOND | {"name": f"disk{n}", "radius": 0.02, "position": [0.05 + 0.08 * n, 1.0]} for n in range(21)]
+    with pytest.raises(SceneError, match=r"one of left or xmin, .*disk0, .*, …\. Name a body"):
+        scene_from_dict(changed({"interaction": [law], "body": row}))
+
+
 def test_angle_in_3d_is_refused() -> None:
     with pytest.raises(SceneError, match=r"body\.0\.angle.*quaternion"):
         scene_from_dict(in_3d(**{"body.0.angle": 1.0}))

@@ -162,6 +162,12 @@ def test_a_scene_and_its_model_are_taken_alike() -> None:
     assert model_of(model_of(scene)) is model_of(scene)
 
 
+def test_a_law_names_a_face_by_either_name() -> None:
+    law = ContactLaw(Selected(Linear, PartOptions()), range=0.05, names=("ymin",))
+    by_other, by_name = (build_system(fall(laws=[replace(law, names=(name,))])) for name in ("ymin", "bottom"))
+    assert [one.surfaces for one in by_other.interactions] == [one.surfaces for one in by_name.interactions]
+
+
 def test_components_have_shapes_that_no_scene_can_name() -> None:
     placed = PlacedMechanism("pair", Pair(PartOptions(), 2), position=(0.5, 0.7))
     history = run(fall(bodies=[], mechanisms=[placed]))
