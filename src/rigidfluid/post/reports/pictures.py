@@ -18,6 +18,9 @@ from rigidfluid.post.reports.style import BLACK, BODY, HATCH, OUTSIDE, new_figur
 TALLEST, NARROWEST = 8.0, 1.4
 """A panel's greatest height, and the least width of its place [inch]."""
 
+LOWEST = 2.0
+"""The least height of a picture, for the words along its colour bar [inch]."""
+
 _GRID = 400  # points along the longer side from which streamlines are drawn
 _CALM = 1e-4  # of the highest speed: where the fluid is slower, rounding decides where it goes
 _OUT_OF_PLANE = 45.0  # degrees between velocity and slice from which on a line in the slice tells little
@@ -86,7 +89,10 @@ def frame(count: int, view: View, labels: tuple[str, str]) -> tuple[Figure, list
     rows = -(-count // columns)
     panel_width = min(7.2 / max(columns, 1.5), TALLEST * width / height)
     place = max(panel_width, NARROWEST)
-    figure = new_figure(columns * place + 2.0, rows * (panel_width * height / width + 0.5) + 0.3)
+    panels_height = rows * (panel_width * height / width + 0.5) + 0.3
+    figure = new_figure(columns * place + 2.0, max(panels_height, LOWEST))
+    # Other layouts take the room beside panels of a fixed shape for room for their labels.
+    figure.set_layout_engine("compressed")
     grid = figure.subplots(rows, columns, squeeze=False)
     for unused in grid.ravel()[count:]:
         unused.set_visible(False)

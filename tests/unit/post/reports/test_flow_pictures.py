@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib import rc_context
 from matplotlib.colors import to_hex
 
 from rigidfluid.core.geometry.arrays import FloatArray
@@ -16,7 +17,7 @@ from rigidfluid.post.reports.pictures import flow_picture, streamline_picture, w
 from rigidfluid.post.reports.raster import Grid
 from rigidfluid.post.reports.scale import QUANTITIES, Scale
 from rigidfluid.post.reports.section import Section
-from rigidfluid.post.reports.style import BODY, HATCH, OUTSIDE
+from rigidfluid.post.reports.style import BODY, HATCH, OUTSIDE, STYLE
 from rigidfluid.post.reports.view_plane import ViewPlane
 
 SPEED = Scale("speed", 0.0, 1.0, 1.0)
@@ -143,6 +144,20 @@ def test_pictures_of_any_domain_fit_on_a_page(size: tuple[float, float]) -> None
     figures = [flow_picture(shown, Scale(quantity, 0.0, 1.0, 1.0)) for quantity in QUANTITIES]
     for figure in (*figures, streamline_picture(shown, SPEED), whole_mesh_picture(shown[0], SPEED)):
         assert np.all(np.array(figure.get_size_inches()) < 18.0)
+
+
+@pytest.mark.parametrize(("count", "size"), [(4, (1.5, 1.2)), (3, (1.5, 1.2)), (1, (10.0, 1.0)), (4, (1.0, 6.0))])
+def test_words_beside_panels_are_within_the_picture(count: int, size: tuple[float, float]) -> None:
+    moments = [swirl(size)] * count
+    with rc_context(STYLE):
+        figure = flow_picture(moments, Scale("vorticity", -1.0, 1.0, 0.1))
+        figure.canvas.draw()
+        for axes in figure.axes:
+            words = axes.get_tightbbox()
+            assert words is not None
+            assert min(words.x0, words.y0) >= 0.0
+            assert words.x1 <= figure.bbox.width
+            assert words.y1 <= figure.bbox.height
 
 
 def test_streamlines_go_along_the_flow_and_there_are_none_at_rest() -> None:
