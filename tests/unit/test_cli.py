@@ -138,7 +138,7 @@ def test_plugins_lists_the_four_kinds() -> None:
         ("body.0.raduis=1", ("body.0.raduis", "radius", "Did you mean 'radius'?")),
         ("body.0.density=heavy", ("body.0.density", "'heavy'", "a valid number", "Density of the body")),
         ("body.0.density=-1", ("body.0.density", "-1", "greater than 0", "Density of the body")),
-        ("body.0.position=[0, 9]", ("body.0.position", "overlaps", "inside the domain", "Move it")),
+        ("body.0.position=[0.3, 9]", ("body.0.position", "overlaps", "inside the domain", "Move it")),
         ("body.0.position=[0.7, 0.5]", ("'left_disk' overlaps body 'right_disk'", "clear of all", "Move it")),
         ("fluid.backend=scikit-fen", ("fluid.backend", "'scikit-fen'", "one of dry", "Did you mean 'scikit-fem'?")),
         ("fluid", ("--set", "'fluid'", "key=value", "For instance")),

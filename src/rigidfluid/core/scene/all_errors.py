@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import ParamSpec, TypeVar, cast
 
@@ -41,11 +41,18 @@ def all_told() -> Iterator[Ask]:
 
 
 def raise_all(errors: Iterable[RigidfluidError]) -> None:
-    """Raise one error as it is, several as SceneErrors, those about the same once; nothing without any."""
-    different: dict[str, RigidfluidError] = {}
-    for one in (one for error in errors for one in error.single_errors):
-        different.setdefault(one.subject, one)
-    if len(different) == 1:
-        raise next(iter(different.values())) from None
-    if different:
-        raise SceneErrors(different.values()) from None
+    """Raise errors together, without what an earlier one says of the same subject; nothing without any."""
+    told: set[str] = set()
+    different: list[RigidfluidError] = []
+    for error in errors:
+        different += [one for one in error.single_errors if one.subject not in told]
+        told.update(one.subject for one in error.single_errors)
+    raise_together(different)
+
+
+def raise_together(errors: Sequence[RigidfluidError]) -> None:
+    """Raise one error as it is, several as SceneErrors; nothing without any."""
+    if len(errors) == 1:
+        raise errors[0] from None
+    if errors:
+        raise SceneErrors(errors) from None

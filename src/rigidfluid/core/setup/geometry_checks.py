@@ -10,7 +10,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.model.types import Contacts, Pose
-from rigidfluid.core.scene.all_errors import raise_all
+from rigidfluid.core.scene.all_errors import raise_together
 from rigidfluid.core.setup.shape_checks import check_shapes
 from rigidfluid.errors import SceneError
 
@@ -32,6 +32,10 @@ SMALLEST_BODY = 1e-8
 end the whole process."""
 
 
+MOST_OVERLAPS_TOLD = 10
+"""Pairs of surfaces whose overlap is told one by one: where a length is wrong, all bodies of a heap overlap."""
+
+
 def check_geometry(model: Model, pose: Pose) -> None:
     """Refuse shapes that contradict themselves, with PluginError, and, with SceneError, bodies that overlap each other
     or a surface of the domain or are lost in it at their starting ``pose``, and a mesh too coarse for a gap."""
@@ -49,7 +53,7 @@ def check_places(placed: Arrangement, pose: Pose, reach: float = 0.0) -> Contact
     the domain, or are lost in it."""
     _check_extent(placed)
     contacts = initial_contacts(placed.domain, placed.exact_detector, placed.shapes, pose, reach)
-    raise_all(_overlaps(placed, contacts))
+    raise_together(list(_overlaps(placed, contacts)))
     return contacts
 
 
@@ -91,13 +95,20 @@ def _check_units(placed: Arrangement) -> None:
 
 
 def _overlaps(placed: Arrangement, contacts: Contacts) -> Iterator[SceneError]:
-    """An error for each body that overlaps or touches something, with that which it overlaps most; the worst first."""
-    told: set[int] = set()
+    """An error for each pair of surfaces that overlap or touch, the deepest first; one for all that are too many."""
+    deepest: dict[tuple[int, int], int] = {}
     for row in np.argsort(contacts.gap, kind="stable").tolist():
-        body = int(contacts.body_a[row])
-        if contacts.gap[row] <= 0.0 and body not in told:
-            told.add(body)
-            yield _overlap(placed, contacts, row)
+        if contacts.gap[row] <= 0.0:
+            deepest.setdefault((int(contacts.body_a[row]), int(contacts.body_b[row])), row)
+    rows = list(deepest.values())
+    yield from (_overlap(placed, contacts, row) for row in rows[:MOST_OVERLAPS_TOLD])
+    if more := rows[MOST_OVERLAPS_TOLD:]:
+        yield SceneError(
+            "further overlaps",
+            f"{len(more)} more, by {abs(float(contacts.gap[more[0]])):.6g} at most",
+            "bodies inside the domain and clear of all other surfaces",
+            f"Mend the {MOST_OVERLAPS_TOLD} deepest, which are told one by one, and check again.",
+        )
 
 
 def _overlap(placed: Arrangement, contacts: Contacts, row: int) -> SceneError:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import re
 import tomllib
 from pathlib import Path
 
@@ -280,6 +281,62 @@ def test_every_body_that_overlaps_is_told(tmp_path: Path) -> None:
 
     assert told.exit_code == 2
     assert [line.partition(": ")[0] for line in told.stderr.splitlines()[1:]] == [f"{path}:30", f"{path}:44"]
+
+
+def test_every_pair_that_overlaps_is_told(tmp_path: Path) -> None:
+    told = check_heap([0.1, 0.4, 0.25], tmp_path)
+
+    pairs = re.findall(r"body '(\d)' overlaps \w+ '(\w+)'.*? by (\S+);.*Move it by more than \3", told)
+    assert pairs == [("0", "2", "0.25"), ("0", "left", "0.1"), ("0", "1", "0.1"), ("1", "2", "0.25")]
+    assert told.startswith("Error: 4 errors\n")
+
+
+def test_beyond_the_ten_deepest_overlaps_their_number_is_told(tmp_path: Path) -> None:
+    first, *pairs, last = check_heap([1.0 + 0.01 * n for n in range(6)], tmp_path).splitlines()
+
+    assert first == "Error: 11 errors"
+    assert len(pairs) == 10
+    assert "further overlaps: found 5 more, by 0.37 at most; " in last
+    assert "Mend the 10 deepest" in last
+
+
+def check_heap(places: list[float], tmp_path: Path) -> str:
+    """What `check` says of a heap that it refuses."""
+    path = tmp_path / "scene.toml"
+    path.write_text(heap(places))
+    told = CliRunner().invoke(app, ["check", str(path)])
+    assert told.exit_code == 2
+    return told.stderr
+
+
+def heap(places: list[float]) -> str:
+    """Disks of a radius of .2 in a row, at these places."""
+    bodies = [
+        f'[[body]]\nname = "{n}"\ntype = "sphere"\nradius = 0.2\ndensity = 1.0\nposition = [{x}, 1.0]\n'
+        for n, x in enumerate(places)
+    ]
+    return "\n".join([HEAP, *bodies])
+
+
+HEAP = """\
+[scene]
+name = "heap"
+dimension = 2
+
+[fluid]
+backend = "dry"
+
+[domain]
+lower = [0.0, 0.0]
+upper = [3.0, 2.0]
+
+[time]
+end = 1.0
+step = 0.001
+
+[output]
+every = 0.02
+"""
 
 
 def test_misspelt_names_of_periodic_surfaces_are_told_before_pairs_are_missed() -> None:
