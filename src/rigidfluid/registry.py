@@ -123,9 +123,9 @@ class Registry:
                 _register(manager, load(point, f"plug-in {plugin}"), plugin)
                 entries += _entries(manager, plugin, origin(point))
             except (ImportError, PluginError) as error:
-                unloaded.append(
-                    Unloaded(point.name, origin(point), error_text(error).removeprefix(f"plug-in {plugin}: "))
-                )
+                remedy = _import_remedy(point, error) if isinstance(error, ImportError) else ""
+                reason = error_text(error).removeprefix(f"plug-in {plugin}: ") + remedy
+                unloaded.append(Unloaded(point.name, origin(point), reason))
         entries.sort(key=lambda entry: KINDS.index(entry.kind))
         _refuse_doubles(entries)
         return cls(tuple(entries), tuple(unloaded))
@@ -180,13 +180,16 @@ class Registry:
     def _remedy(self, kind: Kind[Any], name: str) -> str:
         unusable = [entry for entry in self.entries if entry.kind is kind and not entry.available]
         hints = "".join(f" {entry.name!r} is not usable here: {entry.hint}" for entry in unusable)
-        failures = "".join(
-            f" Plug-in {one.name} of {one.origin} did not load: {one.reason.removesuffix('.')}."
-            for one in self.unloaded
-        )
+        failures = "".join(f" Plug-in {one.name} of {one.origin} did not load: {one.reason}" for one in self.unloaded)
         other = [entry.name for entry in self.entries if entry.kind is kind and name in entry.part.also_called]
         guess = f"Did you mean {other[0]!r}?" if other else suggestion(name, self.names(kind))
         return (guess or "`rigidfluid plugins` lists what is installed.") + hints + failures
+
+
+def _import_remedy(point: metadata.EntryPoint, error: ImportError) -> str:
+    if error.name == point.module:
+        return ". Correct the entry point, or the name of the file."
+    return ". Install what is missing, or mend the plug-in."
 
 
 def _register(manager: pluggy.PluginManager, module: Any, plugin: str) -> None:

@@ -32,8 +32,10 @@ def require_regular(path: Path, key: str, most: float, allowed: str = "a file th
         found = reason if key == str(path) else f"{path}: {reason}"
         raise SceneError(key, found, allowed, "Check path and permissions.") from None
     if not stat.S_ISREG(present.st_mode):
-        found = f"{path}, which is {'a folder' if path.is_dir() else 'a pipe or a device'}"
-        raise SceneError(key, found, "a regular file", "Write its content to a file first.")
+        if path.is_dir():
+            raise SceneError(key, f"{path}, which is a folder", "a regular file", "Name a file in it.")
+        found, remedy = f"{path}, which is a pipe or a device", "Write its content to a file first."
+        raise SceneError(key, found, "a regular file", remedy)
     if present.st_size > most:
         found, limit = f"{path} of {present.st_size / 2**20:.0f} MiB", f"at most {most / 2**20:.0f} MiB"
         raise SceneError(key, found, limit, "Check that it is the right file, or make it smaller.")

@@ -21,7 +21,7 @@ def refusal() -> str:
     assert (plugin.name, plugin.origin) == ("springy", "springy 1.2")
     with pytest.raises(PluginError) as told:
         registry.get(FORCE_LAW, "springy")
-    assert f"Plug-in springy of springy 1.2 did not load: {plugin.reason.removesuffix('.')}." in told.value.remedy
+    assert f"Plug-in springy of springy 1.2 did not load: {plugin.reason}" in told.value.remedy
     return plugin.reason
 
 
@@ -114,9 +114,15 @@ def test_plugin_that_cannot_be_imported_breaks_nothing_else(install: Install, la
     registry = Registry.load()
     assert [(one.name, one.origin) for one in registry.unloaded] == [("springy", "springy 1.2")]
     assert "no_such_package" in registry.unloaded[0].reason
+    assert registry.unloaded[0].reason.endswith("Install what is missing, or mend the plug-in.")
     registry.get(FORCE_LAW, "centre")
     with pytest.raises(PluginError, match=r"Plug-in springy of springy 1\.2 did not load: .*no_such_package"):
         registry.get(FORCE_LAW, "springy")
+
+
+def test_a_module_that_is_missing_is_told_with_its_remedy(install: Install, law: str) -> None:
+    install(law, entry_points="[rigidfluid]\nspringy = springy_plugn\n")
+    assert refusal() == "No module named 'springy_plugn'. Correct the entry point, or the name of the file."
 
 
 def test_missing_package_makes_unavailable(install: Install, law: str) -> None:

@@ -11,7 +11,7 @@ from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.nested.part_options import own_options, refuse_unread
 from rigidfluid.core.scene.contact_tables import ContactTable, InteractionTable
 from rigidfluid.core.setup.contact_laws import ContactLaw, has_own_restitution
-from rigidfluid.registry import FORCE_LAW, Registry
+from rigidfluid.registry import DETECTOR, FORCE_LAW, Registry
 
 
 class _LawTable(NamedTuple):
@@ -31,8 +31,8 @@ def scene_laws(contact: ContactTable, interactions: Sequence[InteractionTable], 
         assert table.law is not None
         assert table.range is not None
         part = registry.get(FORCE_LAW, table.law, f"{field}.law")
-        if isinstance(table, InteractionTable):
-            refuse_unread(table.options, [part], InteractionTable.model_fields, field)
+        others = registry.installed(DETECTOR) if isinstance(table, ContactTable) else []
+        refuse_unread(table.options, [part, *others], type(table).model_fields, field)
         own = {"restitution": table.restitution} if has_own_restitution(part) and table.restitution is not None else {}
         options = own_options(part, {**table.options, **own}, field)
         found.append(

@@ -173,8 +173,13 @@ def part_error(part: Any, key: str, error: BaseException) -> RigidfluidError | K
                 subject, error.found, error.allowed, f"Shorten time.step; if that does not help: {_REMEDY}"
             )
         return PluginError(subject, error.found, error.allowed, _REMEDY)
-    frame, line = list(walk_tb(error.__traceback__))[-1]
-    found = (
-        f"{type(error).__name__}: {error_text(error)}, raised in module {frame.f_globals.get('__name__')}, line {line}"
-    )
+    module, line = _raised_in(error, part if isinstance(part, type) else type(part))
+    found = f"{type(error).__name__}: {error_text(error)}, raised in module {module}, line {line}"
     return PluginError(subject, found, "an answer, or an error of rigidfluid", _REMEDY)
+
+
+def _raised_in(error: BaseException, cls: type) -> tuple[str, int]:
+    """Module and line that an error came from: the innermost in the package of the part, which its author can mend."""
+    lines = [(str(frame.f_globals.get("__name__")), line) for frame, line in walk_tb(error.__traceback__)]
+    package = cls.__module__.partition(".")[0]
+    return next((one for one in reversed(lines) if one[0].partition(".")[0] == package), lines[-1])

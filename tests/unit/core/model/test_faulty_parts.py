@@ -45,6 +45,12 @@ def test_a_part_that_exits_in_a_run(install: Install, law: str, tmp_path: Path) 
     assert json.loads((tmp_path / "summary.json").read_text())["status"].startswith("stopped: force law 'springy'")
 
 
+def test_the_line_of_the_part_is_told_where_another_module_raises(install: Install, law: str) -> None:
+    scene = springy(install, law, FORCE, "return self.options.strenth")
+    with pytest.raises(PluginError, match=r"no attribute 'strenth', raised in module springy_plugin, line \d+;"):
+        check(scene)
+
+
 def test_a_part_that_exits_when_it_is_made_or_asked(install: Install, law: str) -> None:
     scene = springy(install, law, "return (self.range - contacts.gap) ** 2 / 2", "raise SystemExit(0)")
     with pytest.raises(PluginError, match="module springy_plugin"):

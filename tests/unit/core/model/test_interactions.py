@@ -243,6 +243,16 @@ def test_a_table_that_cannot_be_is_refused(interaction: Tables, text: str) -> No
         build_system(scene_from_dict(tables(interaction, body=[LEFT, RIGHT])))
 
 
+@pytest.mark.parametrize("table", ["contact", "interaction.0"])
+def test_a_needed_key_that_is_misspelt_is_told_as_such(table: str) -> None:
+    law = {"law": "barrier", "range": 0.02, "epsilonn": 1.0}
+    scene = tables(contact=law) if table == "contact" else tables(law)
+    with pytest.raises(
+        SceneError, match=rf"{table}.epsilonn: found a key that nothing reads; .*Did you mean 'epsilon'"
+    ):
+        scene_from_dict(scene)
+
+
 def test_an_unknown_law_is_refused_by_its_table() -> None:
     with pytest.raises(PluginError, match=r"interaction.1.law: found 'norml'; .*Did you mean 'normal'"):
         scene_from_dict(tables(NORMAL, NORMAL | {"law": "norml"}))

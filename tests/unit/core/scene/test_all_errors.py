@@ -119,7 +119,8 @@ def test_what_the_model_refuses_comes_together_too(tmp_path: Path) -> None:
     text = (SCENES / "falling_disk.toml").read_text()
     text = text.replace('law = "centre"\n', 'law = "centre"\nstrength = 3\n').replace('on = "all"', 'on = "floor"')
     text = text.replace("density = 1.0            # g/cm²\n", "").replace('"sphere"\nradius', '"ball"\nradius')
-    assert [error.subject for error in errors_of(text, tmp_path)] == ["fluid.density", "boundary.0.on", "body.0.type"]
+    expected = ["fluid.density", "boundary.0.on", "body.0.type", "contact.strength"]
+    assert [error.subject for error in errors_of(text, tmp_path)] == expected
 
 
 def test_errors_that_a_check_finds_later_have_their_line(tmp_path: Path) -> None:

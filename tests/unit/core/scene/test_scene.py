@@ -373,7 +373,7 @@ def test_toml_that_python_cannot_hold_is_refused(tmp_path: Path, text: str) -> N
 
 
 def test_folder_is_no_scene(tmp_path: Path) -> None:
-    with pytest.raises(SceneError, match="which is a folder"):
+    with pytest.raises(SceneError, match=r"which is a folder; allowed is a regular file\. Name a file"):
         load_scene(tmp_path)
 
 
