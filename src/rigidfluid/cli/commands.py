@@ -91,18 +91,20 @@ def run(scene: SceneFile, out: OutFolder = None, assignments: Assignments = None
             from rigidfluid.core.run.run import simulate
             from rigidfluid.core.scene.places import told_in_file
 
-            loaded, compiling = load_scene(scene, assignments or ()), compilation_told()
-        folder = out or Path("out") / loaded.name
-        ends: list[History] = []
-        try:
-            told = told_in_file(scene, assignments or ())
-            with compiling, told, progress_bar(loaded.name, loaded.time) as show:
-                simulate(
-                    loaded, folder, resume=resume, progress=show, processes=console.LAUNCH.size, finished=ends.append
-                )
-        finally:
-            for history in ends:
-                print_end(history, folder)
+            compiling = compilation_told()
+        with compiling:
+            with no_collection():
+                loaded = load_scene(scene, assignments or ())
+            folder = out or Path("out") / loaded.name
+            ends: list[History] = []
+            try:
+                told = told_in_file(scene, assignments or ())
+                with told, progress_bar(loaded.name, loaded.time) as show:
+                    processes = console.LAUNCH.size
+                    simulate(loaded, folder, resume=resume, progress=show, processes=processes, finished=ends.append)
+            finally:
+                for history in ends:
+                    print_end(history, folder)
 
 
 @app.command()
@@ -113,7 +115,7 @@ def check(scene: SceneFile, assignments: Assignments = None, json_file: JsonFile
         from rigidfluid.core.case.load import load_scene
         from rigidfluid.core.scene.places import told_in_file
 
-        with told_in_file(scene, assignments or ()):
+        with compilation_told(), told_in_file(scene, assignments or ()):
             report = ask(load_scene(scene, assignments or ()))
         if json_file is not None:
             write_json(report.to_dict(), json_file)

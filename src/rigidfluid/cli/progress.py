@@ -28,7 +28,7 @@ def compilation_told() -> AbstractContextManager[None]:
 
         def on_start(self, event: Event) -> None:
             if not self.told:
-                tell_aside("Compiling loops, once after each installation: some ten seconds.")
+                tell_aside("Compiling loops, which later runs load: some ten seconds.")
             self.told = True
 
         def on_end(self, event: Event) -> None:
