@@ -9,6 +9,9 @@ from typing import Any
 from rigidfluid.errors import SceneError
 from rigidfluid.regular_file import MOST_TEXT, require_regular
 
+_COMMANDS = {"scene": "run", "study": "study"}
+"""Commands that take a file, by the table that tells its kind."""
+
 
 def read_toml(path: Path, kind: str = "scene") -> dict[str, Any]:
     """Read the tables of a TOML file; ``kind`` says in messages what file it should be.
@@ -17,11 +20,21 @@ def read_toml(path: Path, kind: str = "scene") -> dict[str, Any]:
     """
     require_regular(path, str(path), MOST_TEXT, f"a readable {kind} file")
     try:
-        return _resolve_files(tomllib.loads(path.read_text(encoding="utf-8")), path.resolve().parent)
+        tables = _resolve_files(tomllib.loads(path.read_text(encoding="utf-8")), path.resolve().parent)
     except OSError as error:
         raise SceneError(str(path), error.strerror, f"a readable {kind} file", "Check path and permissions.") from None
     except (ValueError, RecursionError) as error:
         raise SceneError(str(path), f"invalid TOML ({error})", "a TOML file in UTF-8", "Mend the file there.") from None
+    _refuse_other_kind(tables, path, kind)
+    return tables
+
+
+def _refuse_other_kind(tables: dict[str, Any], path: Path, kind: str) -> None:
+    """Raise SceneError where the file is a scene in place of a study, or a study in place of a scene."""
+    for other, command in _COMMANDS.items():
+        if other in tables and kind not in tables:
+            remedy = f"`rigidfluid {command} {path}` takes this file."
+            raise SceneError(str(path), f"a {other} file, with a table [{other}]", f"a {kind} file", remedy)
 
 
 def _resolve_files(table: dict[str, Any], folder: Path) -> dict[str, Any]:
