@@ -407,7 +407,7 @@ def _wet_impacts() -> Iterator[Case]:
     lost = Demand("energy lost", at_most=MOST_LOST)
     once = Demand("rejected steps", at_most=1.0, by_rounding=True)
     thrice = Demand("rejected steps", at_most=3.0)
-    known = dict.fromkeys(sub(1), (lost,)) | dict.fromkeys(imp(1), (once, lost)) | dict.fromkeys(imp(4), (thrice,))
+    known = dict.fromkeys(sub(1) + imp(1), (once, lost)) | dict.fromkeys(imp(4), (thrice,))
     yield from _in_fluid("spin 1e4", scene, two, two, sub(4), known, (*STEADY, TOLD))
     scene = partial(floor_hit, detector={"detector": "narrow_band"})
     yield from _in_fluid("contacts from the mesh, thrown", scene, two, two, sub(4) + imp(4))
