@@ -260,7 +260,7 @@ def _derives(part: Any, parent: type[Any]) -> bool:
 
 
 def missing_packages(part: type[Part]) -> str:
-    """How to get the packages that a part needs and this machine lacks; empty where it lacks none."""
+    """Tell how to get the packages that a part needs and this machine lacks; empty where it lacks none."""
     missing = [package for package in part.requires if find_spec(package.partition(".")[0]) is None]
     return " ".join(f"Package {package} is missing: install {part.requires[package]}." for package in missing)
 

@@ -100,7 +100,7 @@ class Arrangement:
 
     @cached_property
     def depths(self) -> FloatArray:
-        """How far the facets of each body are below its surface (n,) [length].
+        """Depth of the facets of each body below its surface (n,) [length].
 
         h²/(8R) on a circle of radius R with edges h, h²/(6R) on a sphere with triangles of edges h; measured on the
         mesh, as it depends on where an ellipsoid has its large facets.

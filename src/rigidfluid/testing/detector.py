@@ -79,7 +79,7 @@ class DetectorContract:
         return detector.detect(arrangement.pose, mesh, reach)
 
     def depths(self, arrangement: Arrangement) -> FloatArray:
-        """How far the detector's surfaces may lie below the true ones, by number of body, and for walls 0 at the end.
+        """Depth of the detector's surfaces below the true ones that is allowed, by body, and for walls 0 at the end.
 
         With a mesh that is the depth of the facets, h²/(8R) on a circle of radius R with edges h.
         """

@@ -1,4 +1,4 @@
-"""How bodies, contacts and fluid are taken through one step together: predict, follow contacts, solve, converge."""
+"""Scheme that takes bodies, contacts and fluid through a step: predict, follow contacts, solve, converge."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ from rigidfluid.core.model.part import SpatialPart
 
 
 class Joint(SpatialPart):
-    """How two bodies, or a body and the ground, can move relatively to each other.
+    """Relative motion that a joint leaves to two bodies, or to a body and the ground.
 
     It knows no bodies: it is asked for constraints and springs between two markers, which stand at the joint's point
     and are one at the start. Options that contradict each other, or the dimension, raise SceneError, with a field

@@ -39,7 +39,7 @@ ConditionMaker = Callable[[int, str, FloatArray | None], BoundaryCondition]
 
 @checked
 class ContactStepping:
-    """How bodies go through contacts: in ``substeps``, as many as they need if None, or in an ``implicit`` step.
+    """Way of bodies through contacts: in ``substeps``, as many as they need if None, or in an ``implicit`` step.
 
     ``impact_speed``: speed at which free bodies hit, estimated if None [length/time].
     """

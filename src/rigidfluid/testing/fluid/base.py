@@ -112,5 +112,5 @@ class FluidContract:
 
 
 def stirring_shift(time: float) -> FloatArray:
-    """How far the balls of a stirred flow are from where they were, (2, 3) [length]."""
+    """Displacement of the balls of a stirred flow, (2, 3) [length]."""
     return np.asarray(0.03 * np.sin(4.0 * time) * np.array([[1.0, 0.5, -0.5], [0.5, -1.0, 0.5]]))
