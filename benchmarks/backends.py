@@ -140,8 +140,9 @@ time ~ unknownsᵏ, by least squares of the logarithms. Times of other days and 
 """
 
 
-def page(found: Mapping[str, Any]) -> str:
-    """The measurements as a Markdown page."""
+def page(kept: Mapping[str, Any]) -> str:
+    """The measurements that are kept, as a Markdown page."""
+    found = kept["rows"]
     parts = [PREAMBLE.format(**found, every=OUTPUT_EVERY)]
     parts += [f"## {name}\n\n{table(rows)}\n" for name, rows in found["rows"].items()]
     if found["skipped"]:
@@ -207,7 +208,7 @@ def main() -> None:
     parser.add_argument("--kept", action="store_true", help="write the page of what is kept, and measure nothing")
     arguments = parser.parse_args()
     if arguments.kept:
-        write(arguments.page, measurement(arguments.page)["rows"], kept=True)
+        write(arguments.page, measurement(arguments.page), again=True)
         return
     cases = [Case(backend, cores) for backend in arguments.backends for cores in arguments.cores]
     found = collect(cases, arguments.sizes, arguments.steps)
@@ -217,7 +218,7 @@ def main() -> None:
         arguments.json.write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
     if arguments.page:
         found["command"] = told_command(sys.argv[1:])
-        write(arguments.page, measurement(arguments.page, found)["rows"])
+        write(arguments.page, measurement(arguments.page, found))
 
 
 def told_command(words: Sequence[str]) -> str:
@@ -225,10 +226,10 @@ def told_command(words: Sequence[str]) -> str:
     return " ".join(["python benchmarks/backends.py", *(word.removeprefix(f"{ROOT}/") for word in words)])
 
 
-def write(file: Path, found: Mapping[str, Any], *, kept: bool = False) -> None:
+def write(file: Path, kept: Mapping[str, Any], *, again: bool = False) -> None:
     """Write the page and its plot."""
-    plot(found, file.with_suffix(".png"))
-    write_page(file, page(found), kept=kept)
+    plot(kept["rows"], file.with_suffix(".png"))
+    write_page(file, page(kept), kept=again)
 
 
 if __name__ == "__main__":

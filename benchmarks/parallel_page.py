@@ -58,7 +58,7 @@ def figures_of_steps(rows: Sequence[Row]) -> dict[str, str]:
     for dimension in (2, 3):
         own = [row for row in rows if row["dimension"] == dimension]
         shared = [row["speedup_step"] for row in own if row["ranks"] > 1]
-        told[f"speedup_{dimension}"] = f"{min(shared):.1f} to {max(shared):.1f}"
+        told[f"speedup_{dimension}"] = f"{min(shared):.2f} to {max(shared):.2f}"
         told[f"share_{dimension}"] = f"{100 * max(row['share'] for row in own):.2g}"
         told[f"paper_{dimension}"] = f"{100 * PAPER_SHARE[dimension]:.0f}"
     return told

@@ -62,6 +62,9 @@ SUBJECTS = {
         "settling_sphere": "Steps in 3D: iterations, time and memory",
         "parallel": "Many balls on several processes",
     },
+    "Tests": {
+        "tests": "The validation tests: which pass, and which fail",
+    },
 }
 HEAD = """# Validation
 

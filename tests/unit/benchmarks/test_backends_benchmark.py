@@ -46,7 +46,7 @@ def test_a_page_has_a_table_for_each_case_and_the_reason_of_what_is_missing(back
         "rows": {"one, 2 threads": [row(backends, 100, 0.01), row(backends, 10_000, 1.0)]},
         "skipped": {"other, 1 thread": "not here"},
     }
-    page = backends.page(found)
+    page = backends.page({"rows": found})
     assert "| [ms a step] | 100 | 10000 | exponent |" in page
     assert "| **whole step** | 10.0 | 1000.0 | 1.00 |" in page
     assert "| iterate | 5.0 | 500.0 | 1.00 |" in page
