@@ -119,7 +119,7 @@ scene with a step of .25 ms (falling disk) and 3.125 ms (flow started at once); 
 meshes included. Runs with a tolerance have a longest step of 32 ms and .4 s. How steps are chosen is in
 [numerics](../numerics.md#steps-by-a-tolerance).
 
-Shares below are CPU seconds with a tolerance over those with which fixed steps first come down to the same error,
+Ratios below are CPU seconds with a tolerance over those with which fixed steps first come down to the same error,
 interpolated between them: below 1 the tolerance is cheaper. A tolerance is left out where fixed steps do not come down
 to its error, or the longest is below it.
 
@@ -131,10 +131,11 @@ positions count, and in bounces.
 
 `scenes/falling_disk.toml` with `size_body` .025. Passage: of 2, 1 and .5 cm.
 
-* Velocity, root mean square: {velocity}.
-* Times of passage: {passage}. Errors of fixed steps are small there by cancellation: what height a long first step
-  loses, Adams–Bashforth 2 takes back later with the other sign. With a tolerance the start is exact, and the later
-  errors, all of one sign, add up.
+* Ratio of CPU seconds for the velocity, root mean square: {velocity}.
+* Ratio of CPU seconds for times of passage: {passage}.
+* Errors of fixed steps are small in times of passage by cancellation: what height a long first step loses,
+  Adams–Bashforth 2 takes back later with the other sign. With a tolerance the start is exact, and the later errors,
+  all of one sign, add up.
 * Errors of the height [cm]: {heights}.
 
 {falling}
@@ -144,9 +145,9 @@ positions count, and in bounces.
 `scenes/dfg_cylinder.toml` with `size_body` .006: a cylinder that is held in a stream which starts in the first
 step. The mesh stays as it is.
 
-* Drag after .2 s: {drag}.
-* Drag from .02 s on: {drag_early}.
-* Kinetic energy: {kinetic}.
+* Ratio of CPU seconds for the drag after .2 s: {drag}.
+* Ratio of CPU seconds for the drag from .02 s on: {drag_early}.
+* Ratio of CPU seconds for the kinetic energy: {kinetic}.
 * Energy is not lost, as the flow begins as the potential flow of a [start at once](../numerics.md#impulsive-starts):
   at most {lost:.1g} % in any run.
 
