@@ -140,13 +140,13 @@ time ~ unknownsᵏ, by least squares of the logarithms. Times of other days and 
 """
 
 
-def page(kept: Mapping[str, Any]) -> str:
-    """The measurements that are kept, as a Markdown page."""
-    found = kept["rows"]
-    parts = [PREAMBLE.format(**found, every=OUTPUT_EVERY)]
-    parts += [f"## {name}\n\n{table(rows)}\n" for name, rows in found["rows"].items()]
-    if found["skipped"]:
-        left_out = "\n".join(f"* {name}: {reason}" for name, reason in found["skipped"].items())
+def page(found: Mapping[str, Any]) -> str:
+    """The measurements as a Markdown page."""
+    told = found["rows"]
+    parts = [PREAMBLE.format(**told, every=OUTPUT_EVERY)]
+    parts += [f"## {name}\n\n{table(rows)}\n" for name, rows in told["rows"].items()]
+    if told["skipped"]:
+        left_out = "\n".join(f"* {name}: {reason}" for name, reason in told["skipped"].items())
         parts.append(f"## Not measured\n\n{left_out}\n")
     return "\n".join(parts)
 
@@ -208,7 +208,7 @@ def main() -> None:
     parser.add_argument("--kept", action="store_true", help="write the page of what is kept, and measure nothing")
     arguments = parser.parse_args()
     if arguments.kept:
-        write(arguments.page, measurement(arguments.page), again=True)
+        write(arguments.page, measurement(arguments.page), kept=True)
         return
     cases = [Case(backend, cores) for backend in arguments.backends for cores in arguments.cores]
     found = collect(cases, arguments.sizes, arguments.steps)
@@ -226,10 +226,10 @@ def told_command(words: Sequence[str]) -> str:
     return " ".join(["python benchmarks/backends.py", *(word.removeprefix(f"{ROOT}/") for word in words)])
 
 
-def write(file: Path, kept: Mapping[str, Any], *, again: bool = False) -> None:
+def write(file: Path, found: Mapping[str, Any], *, kept: bool = False) -> None:
     """Write the page and its plot."""
-    plot(kept["rows"], file.with_suffix(".png"))
-    write_page(file, page(kept), kept=again)
+    plot(found["rows"], file.with_suffix(".png"))
+    write_page(file, page(found), kept=kept)
 
 
 if __name__ == "__main__":
