@@ -53,13 +53,13 @@ def page(work: Work) -> Page:
         stages=", ".join(f"{stage} {100 * seconds / sum(stages.values()):.0f} %" for stage, seconds in stages.items()),
         study=study_table(study),
     )
-    seen = movie(shipped.folder, work.folder / "movie.gif", Look(show="vorticity", longer=300))
+    seen = movie(shipped.folder, work.folder / "movie.gif", Look(show="vorticity", longer=300, every=2))
     figures_shown = {"": moments(shipped, first), ".gif": seen, "_cost": cost(shipped), "_heights": heights(disks)}
     return Page("A hundred disks settle", text, figures_shown | {"_study": study_plot(study)})
 
 
 TEXT = """Case 6 of arXiv:2402.19093 with the paper's law, box and step, `scenes/hundred_disks.toml`. [The run as a
-movie](hundred_disks.gif), by `rigidfluid movie --show vorticity --size 300`.
+movie](hundred_disks.gif), by `rigidfluid movie --show vorticity --size 300 --every 2`.
 
 {figures}
 

@@ -36,6 +36,7 @@ from rigidfluid.cli.options import (
     Plane,
     Resume,
     Shown,
+    ShownEvery,
     StudyFile,
     Version,
     View,
@@ -208,13 +209,14 @@ def movie(
     view: View = None,
     size: MovieSize = 600,
     fps: FramesPerSecond = 15,
+    every: ShownEvery = 1,
 ) -> None:
     """Make a movie from the results in a folder."""
     with reported(), movie_bar() as progress:
         from rigidfluid.post.movies import Look
         from rigidfluid.post.movies import movie as make_movie
 
-        path = make_movie(folder, out, Look(show, follow, view, size, fps, plane), progress)
+        path = make_movie(folder, out, Look(show, follow, view, size, fps, plane, every), progress)
     tell(f"wrote {path}")
 
 

@@ -63,4 +63,5 @@ View = Annotated[
     typer.Option("--view", help="Left, lower, right, upper end of what is seen; from the body's centre with --follow."),
 ]
 MovieSize = Annotated[int, typer.Option("--size", help="Points along the longer side.", min=50, max=4000)]
+ShownEvery = Annotated[int, typer.Option("--every", help="Show one of so many output times.", min=1)]
 FramesPerSecond = Annotated[int, typer.Option("--fps", help="Pictures a second.", min=1, max=100)]

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
-from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
@@ -22,6 +22,7 @@ from rigidfluid.core.setup.model import Model
 from rigidfluid.errors import OutputError
 from rigidfluid.post.movies.picture import draw_bodies, flow_image, ground, paint_flow
 from rigidfluid.post.movies.shot import Shot, Window, shot_of
+from rigidfluid.post.movies.small_gif import SmallGifWriter
 from rigidfluid.post.reports.canvas import Canvas, body_shells
 from rigidfluid.post.reports.results import Results, read_results
 from rigidfluid.post.reports.scale import Quantity, Scale
@@ -31,6 +32,9 @@ from rigidfluid.post.reports.view_plane import PlaneName
 
 Progress = Callable[[int, int], None]
 
+_LAYOUTS = 6
+"""Number of drawings after which the layout no longer changes."""
+
 
 @dataclass(frozen=True)
 class Look:
@@ -38,7 +42,8 @@ class Look:
 
     ``show``: quantity of the fluid. ``follow``: name of a body that the picture goes with. ``window``: left, lower,
     right and upper end of what is seen [length]; the whole domain if not given. ``longer``: points along the picture's
-    longer side. ``rate``: pictures a second. ``plane``: plane of a 3D run, as `view_plane` takes it.
+    longer side. ``rate``: pictures a second. ``plane``: plane of a 3D run, as `view_plane` takes it. ``every``: of so
+    many output times one is shown.
     """
 
     show: Quantity = "speed"
@@ -47,6 +52,7 @@ class Look:
     longer: int = 600
     rate: int = 15
     plane: PlaneName = "motion"
+    every: int = 1
 
 
 @dataclass(frozen=True)
@@ -74,7 +80,7 @@ def movie(
     """
     look, results = look or Look(), read_results(Path(folder), motion_only=True, model=model)
     path, writer = _writer(Path(out) if out else None, Path(folder), look.rate)
-    shot, frames = shot_of(results, look.follow, look.window, look.plane), _frames(results)
+    shot, frames = shot_of(results, look.follow, look.window, look.plane), _frames(results)[:: look.every]
     follow = None if look.follow is None else results.number_of(look.follow)
     scale = shared_scale(results, look.show, shot.plane, follow) if results.series else None
     if out is None:
@@ -89,6 +95,8 @@ def movie(
                     image.set_data(_picture(results, shot, frame, look, scale))
                     title = results.units.put_after_numbers(f"time {results.time[frame.state]:.4g} [time]")
                     _label(axes, shot, frame.state, title)
+                    if number == 1:
+                        _settle(figure)
                     writer.grab_frame()
                     if progress is not None:
                         progress(number, len(frames))
@@ -145,12 +153,20 @@ def _label(axes: Axes, shot: Shot, state: int, title: str) -> None:
     axes.set_title(title)
 
 
+def _settle(figure: Figure) -> None:
+    """Let the figure find its layout, and keep it: Matplotlib's comes nearer with each drawing, and in the first one
+    labels may be cut off."""
+    for _ in range(_LAYOUTS):
+        figure.draw_without_rendering()
+    figure.set_layout_engine("none")
+
+
 def _writer(out: Path | None, folder: Path, rate: int) -> tuple[Path, AbstractMovieWriter]:
     """Path of the movie, and the writer of its format."""
     encoder = _encoder_path()
     path = out or folder / ("movie.mp4" if encoder else "movie.gif")
     if path.suffix == ".gif":
-        return path, PillowWriter(fps=rate)
+        return path, SmallGifWriter(fps=rate)
     if path.suffix != ".mp4":
         raise OutputError("--out", path.name, "a name that ends in .mp4 or .gif", "Choose one of both.")
     if encoder is None:

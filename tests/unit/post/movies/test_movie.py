@@ -23,6 +23,7 @@ from rigidfluid.errors import OutputError
 from rigidfluid.post.movies import Look, movie
 from rigidfluid.post.movies.picture import draw_bodies, flow_image, ground, paint_flow
 from rigidfluid.post.movies.shot import shot_of
+from rigidfluid.post.movies.small_gif import COLOURS
 from rigidfluid.post.reports.canvas import Canvas, body_shells
 from rigidfluid.post.reports.results import Results, read_results
 from rigidfluid.post.reports.scale import Scale
@@ -261,3 +262,20 @@ def test_without_an_encoder_a_gif_is_made_and_an_mp4_refused(
     with pytest.raises(OutputError, match=r"Install rigidfluid\[movies\]"):
         movie(dry, tmp_path / "a.mp4")
     assert movie(dry, look=Look(longer=60)).name == "movie.gif"
+
+
+def test_of_many_output_times_every_second_is_shown(dry: Path, tmp_path: Path) -> None:
+    every, second = (movie(dry, tmp_path / f"{n}.gif", Look(longer=60, every=n)) for n in (1, 2))
+    np.testing.assert_array_equal(frames(second), frames(every)[::2])
+
+
+def test_no_label_of_a_first_picture_is_cut_off(wet: Path, tmp_path: Path) -> None:
+    shown = frames(movie(wet, tmp_path / "a.gif", Look(show="vorticity", longer=340, window=(0.0, 3.0, 1.0, 5.0))))
+    for picture in shown:
+        edges = picture[[0, -1]].reshape(-1, 3), picture[:, [0, -1]].reshape(-1, 3)
+        assert np.concatenate(edges).min() > 200
+
+
+def test_pictures_of_a_gif_share_their_colours(wet: Path, tmp_path: Path) -> None:
+    seen = np.concatenate([frame.reshape(-1, 3) for frame in frames(movie(wet, tmp_path / "a.gif", Look(longer=60)))])
+    assert len(np.unique(seen, axis=0)) <= COLOURS
