@@ -7,6 +7,7 @@ are kept in out/gallery, or the folder ``--runs``; one that is there is drawn as
 from __future__ import annotations
 
 import argparse
+import json
 from pathlib import Path
 
 from PIL import Image
@@ -58,7 +59,7 @@ PICTURES = {
 def draw(name: str, runs: Path) -> Path:
     """Write a scene's picture to docs/pictures; its run is made where it is not in ``runs`` yet."""
     shown, folder = PICTURES[name], runs / name
-    if not (folder / "summary.json").exists():
+    if not _is_complete(folder):
         settings = (f"time.end={shown.times[-1]}", *shown.settings)
         rigidfluid.run(rigidfluid.load_scene(SCENES / f"{name}.toml", settings), folder)
     path = picture(name)
@@ -67,6 +68,11 @@ def draw(name: str, runs: Path) -> Path:
         small = image.convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=3)
     small.save(path, optimize=True)
     return path
+
+
+def _is_complete(folder: Path) -> bool:
+    summary = folder / "summary.json"
+    return summary.exists() and json.loads(summary.read_text(encoding="utf-8"))["status"] == "completed"
 
 
 def main() -> None:
