@@ -72,7 +72,7 @@ def draw(name: str, runs: Path) -> Path:
 
 def _is_complete(folder: Path) -> bool:
     summary = folder / "summary.json"
-    return summary.exists() and json.loads(summary.read_text(encoding="utf-8"))["status"] == "completed"
+    return summary.exists() and json.loads(summary.read_text(encoding="utf-8"))["status"] == "complete"
 
 
 def main() -> None:
