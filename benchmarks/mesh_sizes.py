@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import ceil, log2
 
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.size.size_field import Sizes
 
 PAPER_NODES = {
     2: {1: 16462, 25: 17780, 49: 18284, 81: 18813, 100: 19139},

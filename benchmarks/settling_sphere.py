@@ -25,7 +25,7 @@ from written_page import write_page
 from rigidfluid.core.case.load import load_scene
 from rigidfluid.core.run.process import one_openblas_thread, peak_memory
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
+from rigidfluid.taylor_hood.linear_solver.lagged_solver import LaggedSolver
 
 STORE = Path(__file__).with_suffix(".json")
 SCENE = Path(__file__).resolve().parents[1] / "scenes" / "falling_sphere.toml"

@@ -34,15 +34,15 @@ HOOKS = (
     ("assemble matrix", "rigidfluid.backends.scikit_fem.assembly", "CompiledAssembly.matrix"),
     ("assemble matrix", "rigidfluid.backends.dolfinx.forms", "Forms.assemble"),
     ("assemble matrix", "rigidfluid_ngsolve.assembly", "FormAssembly.matrix"),
-    ("assemble load", "rigidfluid.taylor_hood.sparse", "SparseDiscretisation.mass_times"),
+    ("assemble load", "rigidfluid.taylor_hood.linear_solver.sparse", "SparseDiscretisation.mass_times"),
     ("assemble load", "rigidfluid.backends.dolfinx.discretisation", "PetscDiscretisation.mass_times"),
-    ("fill P", "rigidfluid.taylor_hood.constraint", "Constraint.place"),
+    ("fill P", "rigidfluid.taylor_hood.system.constraint", "Constraint.place"),
     ("fill P", "rigidfluid.backends.dolfinx.constraint", "DistributedConstraint.matrix"),
-    (FACTORISE, "rigidfluid.taylor_hood.lagged_solver", "LaggedSolver._renew"),
-    (ITERATE, "rigidfluid.taylor_hood.lagged_solver", "LaggedSolver.solve"),
-    (RESPOND, "rigidfluid.taylor_hood.lagged_solver", "LaggedSolver.solve_columns"),
-    ("energies", "rigidfluid.taylor_hood.advance", "kinetic_energy"),
-    ("energies", "rigidfluid.taylor_hood.advance", "dissipation"),
+    (FACTORISE, "rigidfluid.taylor_hood.linear_solver.lagged_solver", "LaggedSolver._renew"),
+    (ITERATE, "rigidfluid.taylor_hood.linear_solver.lagged_solver", "LaggedSolver.solve"),
+    (RESPOND, "rigidfluid.taylor_hood.linear_solver.lagged_solver", "LaggedSolver.solve_columns"),
+    ("energies", "rigidfluid.taylor_hood.stepping.advance", "kinetic_energy"),
+    ("energies", "rigidfluid.taylor_hood.stepping.advance", "dissipation"),
 )
 """Stage, module and function of each part of a fluid solve."""
 

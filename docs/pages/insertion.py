@@ -10,7 +10,7 @@ from insertion_cases import CASES, outcome
 from page_tools import Page, Work, table
 from wall_drift import Drift, wall_drift
 
-from rigidfluid.core.mesh.inserter import Way
+from rigidfluid.core.mesh.generation.inserter import Way
 from rigidfluid.errors import MeshError
 from rigidfluid.post.insertion import insert
 

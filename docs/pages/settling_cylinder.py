@@ -7,9 +7,9 @@ from matplotlib.figure import Figure
 from page_tools import Page, Run, Work, table
 
 from rigidfluid.core.case.scene_model import model_of
-from rigidfluid.core.mesh.coarsening import relative_sizes
+from rigidfluid.core.mesh.adaptation.coarsening import relative_sizes
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.output.vtu import read_pvd, read_vtu
 

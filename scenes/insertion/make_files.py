@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from netgen import meshing, occ
 
-from rigidfluid.core.mesh.meshing import EdgeLengths, elements, netgen_mesh
+from rigidfluid.core.mesh.generation.meshing import EdgeLengths, elements, netgen_mesh
 from rigidfluid.core.mesh.topology import orient
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.output.mesh_files import write_msh

@@ -55,7 +55,7 @@ from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.mechanics.strokes import Stroke
 from rigidfluid.core.mesh.flow import AtRest, Flow
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.size_interface import SizeField
+from rigidfluid.core.mesh.size.size_interface import SizeField
 from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.domain import Domain

@@ -17,7 +17,7 @@ import pluggy
 
 if TYPE_CHECKING:
     from rigidfluid.core.joints.joint import Joint
-    from rigidfluid.core.mesh.size_interface import SizeField
+    from rigidfluid.core.mesh.size.size_interface import SizeField
     from rigidfluid.core.model.body import Body
     from rigidfluid.core.model.detector import Detector
     from rigidfluid.core.model.domain import Domain

@@ -18,7 +18,7 @@ from rigidfluid import hookspecs
 from rigidfluid.core.geometry.value_types import refuse_other_types
 from rigidfluid.core.geometry.wrong import Wrong
 from rigidfluid.core.joints.joint import Joint
-from rigidfluid.core.mesh.size_interface import SizeField
+from rigidfluid.core.mesh.size.size_interface import SizeField
 from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.domain import Domain

@@ -13,8 +13,8 @@ from wedge import wedge
 from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.geometry.surface import Plane
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.meshing import generate_mesh
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.generation.meshing import generate_mesh
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.nested.bodies import NestedBodyTable
 from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.domains.channel import Channel, ChannelOptions

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 from touching import unstacked
 
-from rigidfluid.core.contact.film_loss import FilmLoss
-from rigidfluid.core.contact.repulsion import Repulsion
-from rigidfluid.core.contact.restitution import Restitution
+from rigidfluid.core.contact.laws.film_loss import FilmLoss
+from rigidfluid.core.contact.laws.repulsion import Repulsion
+from rigidfluid.core.contact.laws.restitution import Restitution
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.interactions import Interaction, SumOfLaws
 from rigidfluid.core.model.types import Film

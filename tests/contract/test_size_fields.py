@@ -2,7 +2,7 @@
 
 import pytest
 
-from rigidfluid.core.mesh.wake import Wake
+from rigidfluid.core.mesh.size.wake import Wake
 from rigidfluid.size_fields.vorticity import Vorticity, VorticityOptions
 from rigidfluid.testing import SizeFieldContract
 

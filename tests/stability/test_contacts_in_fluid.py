@@ -25,14 +25,14 @@ from fluid_contacts import (
 import rigidfluid
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
-from rigidfluid.core.contact.proximity import travel
+from rigidfluid.core.contact.pairs.proximity import travel
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.output.history import History
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene
-from rigidfluid.taylor_hood.numbering import Numbering
-from rigidfluid.taylor_hood.surfaces import Surfaces, pressure_pin_vertex
+from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.elements.surfaces import Surfaces, pressure_pin_vertex
 
 pytestmark = pytest.mark.long
 

@@ -12,7 +12,7 @@ from rigidfluid.core.geometry.facet_moments import facet_moments
 from rigidfluid.core.geometry.facet_surface import FacetSurface
 from rigidfluid.core.geometry.facets import Facets, area_vectors
 from rigidfluid.core.geometry.piece import Piece
-from rigidfluid.core.mesh.meshing import EdgeLengths, netgen_mesh
+from rigidfluid.core.mesh.generation.meshing import EdgeLengths, netgen_mesh
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.part import PartOptions
 

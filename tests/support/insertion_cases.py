@@ -16,13 +16,13 @@ from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.geometry.facets import Facets, area_vectors
 from rigidfluid.core.mechanics.frames import distance_to_body
+from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.inserter import Inserter, Way
+from rigidfluid.core.mesh.generation.inserter import Inserter, Way
+from rigidfluid.core.mesh.generation.meshing import EdgeLengths, netgen_mesh
+from rigidfluid.core.mesh.generation.surface_mesh import surface_mesh
 from rigidfluid.core.mesh.mesh_quality import cell_quality
-from rigidfluid.core.mesh.meshing import EdgeLengths, netgen_mesh
-from rigidfluid.core.mesh.remesh import initial_mesh
-from rigidfluid.core.mesh.size_field import Sizes
-from rigidfluid.core.mesh.surface_mesh import surface_mesh
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_mesh
 from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.domain import Domain

@@ -14,7 +14,7 @@ from rigidfluid.backends.dry import Dry
 from rigidfluid.backends.scikit_fem.backend import ScikitFem
 from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.core.joints.constraints import Constraint, SamePoint
-from rigidfluid.core.mesh.size_interface import SizeField
+from rigidfluid.core.mesh.size.size_interface import SizeField
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.mechanism import Component, Mechanism

@@ -8,9 +8,9 @@ from rigidfluid.bodies.ellipsoid import Ellipsoid
 from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.core.mechanics.frames import distance_to_body
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
+from rigidfluid.core.mesh.generation.meshing import generate_mesh
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
-from rigidfluid.core.mesh.meshing import generate_mesh
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_mesh
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.setup.geometry_checks import surfaces_of

@@ -42,6 +42,18 @@ PARTS = {
 """What built-in parts import besides the model and mechanics; obstacles of domains, components of mechanisms and drives
 of joints are tables in a scene."""
 
+WITHIN = {
+    "core/contact": {"pairs": "", "laws": "pairs", "path": "laws pairs"},
+    "core/mesh": {"size": "", "generation": "size", "adaptation": "generation size"},
+    "taylor_hood": {
+        "elements": "",
+        "system": "elements",
+        "linear_solver": "system elements",
+        "stepping": "system elements",
+    },
+}
+"""Rooms within rooms, and which others of the same room each imports, besides modules that are in none of them."""
+
 POST = {"reports": "", "movies": "reports", "insertion": "reports", "studies": "reports", "comparison": "reports"}
 """What each room of post imports from it, besides modules that are in none of them."""
 
@@ -57,10 +69,25 @@ def imports(path: Path) -> Iterator[str]:
 @pytest.mark.parametrize("room", BELOW)
 def test_a_room_imports_from_those_below_alone(room: str) -> None:
     allowed = {room, *BELOW[room].split()}
-    paths = sorted((SOURCE / "core" / room).glob("*.py"))
+    paths = sorted((SOURCE / "core" / room).rglob("*.py"))
     assert paths
-    rooms = {path.name: {name.split(".")[2] for name in imports(path) if ".core." in name} for path in paths}
+    rooms = {str(path): {name.split(".")[2] for name in imports(path) if ".core." in name} for path in paths}
     assert {name: above for name, found in rooms.items() if (above := found - allowed)} == {}
+
+
+@pytest.mark.parametrize(("room", "within"), [(room, within) for room in WITHIN for within in WITHIN[room]])
+def test_a_room_within_a_room_imports_from_those_below_alone(room: str, within: str) -> None:
+    prefix = f"rigidfluid.{room.replace('/', '.')}."
+    paths = sorted((SOURCE / room / within).rglob("*.py"))
+    assert len(paths) > 1
+    names = {name.removeprefix(prefix).split(".")[0] for path in paths for name in imports(path) if prefix in name}
+    assert names & WITHIN[room].keys() <= {within, *WITHIN[room][within].split()}
+
+
+@pytest.mark.parametrize("room", WITHIN)
+def test_modules_beside_rooms_within_a_room_are_few(room: str) -> None:
+    beside = [path for path in (SOURCE / room).glob("*.py") if path.name != "__init__.py"]
+    assert len(beside) <= 7
 
 
 def test_core_has_no_other_modules() -> None:

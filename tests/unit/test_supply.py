@@ -12,7 +12,7 @@ from paths import ROOT
 
 from rigidfluid import regular_file
 from rigidfluid.core.case import expressions
-from rigidfluid.core.mesh.inserter import MESHER_TIMEOUT
+from rigidfluid.core.mesh.generation.inserter import MESHER_TIMEOUT
 from rigidfluid.core.nested.rows import MOST_ROWS
 from rigidfluid.core.scene.validation import LARGEST, SMALLEST
 from rigidfluid.core.setup.model_checks import MOST_STEPS

@@ -10,8 +10,8 @@ from skfem import MeshTet, MeshTri
 
 from rigidfluid.api import FloatArray
 from rigidfluid.backends.scikit_fem.assembly import CompiledAssembly
-from rigidfluid.taylor_hood.coefficients import Coefficients
-from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.system.coefficients import Coefficients
 from rigidfluid.testing.fluid.curved import ball_in_a_box
 from rigidfluid_ngsolve.assembly import FormAssembly
 

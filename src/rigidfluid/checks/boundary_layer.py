@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from rigidfluid.checks.finding import Finding, figure, round_down
 from rigidfluid.core.mechanics.boundary_layer import CELLS_WANTED
-from rigidfluid.core.mesh.layer_cells import FEWEST_CELLS, thinnest_layer
+from rigidfluid.core.mesh.generation.layer_cells import FEWEST_CELLS, thinnest_layer
 from rigidfluid.core.model.system import System
 from rigidfluid.core.scene.mesh_tables import MeshTable
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rigidfluid.checks.response import turning_gap
-from rigidfluid.core.contact.loads import (
+from rigidfluid.core.contact.laws.loads import (
     closing_speed,
     held_weight,
     impact_energy,
@@ -17,7 +17,9 @@ from rigidfluid.core.contact.loads import (
     pair_energy,
     stacked_weight,
 )
-from rigidfluid.core.contact.representative_contacts import (
+from rigidfluid.core.contact.laws.stiffness import greatest_stiffness
+from rigidfluid.core.contact.laws.work_to_stop import share_left
+from rigidfluid.core.contact.pairs.representative_contacts import (
     body_classes,
     facing_normal,
     free,
@@ -25,8 +27,6 @@ from rigidfluid.core.contact.representative_contacts import (
     representatives,
     wall_contacts,
 )
-from rigidfluid.core.contact.stiffness import greatest_stiffness
-from rigidfluid.core.contact.work_to_stop import share_left
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.model.contacts import select

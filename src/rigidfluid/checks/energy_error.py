@@ -10,7 +10,7 @@ import numpy as np
 from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.finding import Finding, figure, round_down
 from rigidfluid.checks.stepping import ACCURATE
-from rigidfluid.core.contact.loads import pair_values
+from rigidfluid.core.contact.laws.loads import pair_values
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.shapes import equal_volume_radius

@@ -8,7 +8,7 @@ import numpy as np
 
 from rigidfluid.checks.design_contacts import representative_contacts
 from rigidfluid.checks.finding import Finding, figure, round_down
-from rigidfluid.core.contact.gap_curvature import with_effective_radii
+from rigidfluid.core.contact.pairs.gap_curvature import with_effective_radii
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.system import System

@@ -6,7 +6,7 @@ import time
 
 _POINTS = 96
 _REFERENCE = 0.025
-"""CPU seconds of the factors below on the machine of the fits in `rigidfluid.taylor_hood.predicted_cost`."""
+"""CPU seconds of the factors below on the machine of the fits in `taylor_hood.linear_solver.predicted_cost`."""
 _REPEATS = 3
 
 

@@ -8,9 +8,9 @@ from itertools import combinations
 import numpy as np
 
 from rigidfluid.checks.finding import Finding, figure, round_down
-from rigidfluid.core.contact.loads import impact_energy
-from rigidfluid.core.contact.proximity import are_separate
-from rigidfluid.core.contact.representative_contacts import body_classes, free, wall_contacts
+from rigidfluid.core.contact.laws.loads import impact_energy
+from rigidfluid.core.contact.pairs.proximity import are_separate
+from rigidfluid.core.contact.pairs.representative_contacts import body_classes, free, wall_contacts
 from rigidfluid.core.mechanics.shapes import half_thickness, inscribed_radius
 from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.contacts import select

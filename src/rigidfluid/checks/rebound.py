@@ -10,9 +10,9 @@ import numpy as np
 from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.film import resolved_gap
 from rigidfluid.checks.finding import Finding, figure, round_down
-from rigidfluid.core.contact.film_loss import REBOUND, braking
-from rigidfluid.core.contact.gap_curvature import with_effective_radii
-from rigidfluid.core.contact.stokes_number import stokes_number, stokes_number_taken
+from rigidfluid.core.contact.laws.film_loss import REBOUND, braking
+from rigidfluid.core.contact.laws.stokes_number import stokes_number, stokes_number_taken
+from rigidfluid.core.contact.pairs.gap_curvature import with_effective_radii
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.types import Contacts, Film

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.finding import round_down, round_up
-from rigidfluid.core.contact.repulsion import AUTO, Repulsion
-from rigidfluid.core.contact.restitution import without_restitution
+from rigidfluid.core.contact.laws.repulsion import AUTO, Repulsion
+from rigidfluid.core.contact.laws.restitution import without_restitution
 
 
 def strength_remedy(design: DesignContacts, share: float) -> tuple[Mapping[str, float], str]:

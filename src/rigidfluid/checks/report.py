@@ -32,7 +32,7 @@ from rigidfluid.checks.stepping import step_findings
 from rigidfluid.checks.tolerance import tolerance_findings
 from rigidfluid.checks.units import unit_findings
 from rigidfluid.core.case.scene_model import Case, model_of
-from rigidfluid.core.contact.spot_check import spot_check
+from rigidfluid.core.contact.laws.spot_check import spot_check
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.foreign import no_exit
 from rigidfluid.core.model.memory import told_memory

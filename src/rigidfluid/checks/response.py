@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.contact.representative_contacts import contacts_at_gaps
+from rigidfluid.core.contact.pairs.representative_contacts import contacts_at_gaps
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.types import Contacts

@@ -13,11 +13,11 @@ from rigidfluid.checks.resolution import narrowest_gaps
 from rigidfluid.checks.settled_pose import settled_pose
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
-from rigidfluid.core.mesh.cell_count import Count, expected_count
+from rigidfluid.core.mesh.adaptation.mmg import MESHER_MEMORY
 from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
-from rigidfluid.core.mesh.mmg import MESHER_MEMORY
-from rigidfluid.core.mesh.size_field import Sizes
-from rigidfluid.core.mesh.size_interface import SizeField, with_fields_at_rest
+from rigidfluid.core.mesh.generation.cell_count import Count, expected_count
+from rigidfluid.core.mesh.size.size_field import Sizes
+from rigidfluid.core.mesh.size.size_interface import SizeField, with_fields_at_rest
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Pose, SolverCost
 from rigidfluid.core.run.mesh_keys import sizes_of

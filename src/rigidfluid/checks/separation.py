@@ -8,8 +8,8 @@ import numpy as np
 
 from rigidfluid.checks.design_contacts import representative_contacts
 from rigidfluid.checks.finding import Finding, Grade, figure
-from rigidfluid.core.contact.representative_contacts import body_classes, facing_normal, free
-from rigidfluid.core.contact.strength import chosen_strengths
+from rigidfluid.core.contact.laws.strength import chosen_strengths
+from rigidfluid.core.contact.pairs.representative_contacts import body_classes, facing_normal, free
 from rigidfluid.core.geometry.surface import Surface
 from rigidfluid.core.model.system import System
 

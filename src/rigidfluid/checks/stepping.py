@@ -10,8 +10,8 @@ import numpy as np
 
 from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.finding import Finding, Grade, figure, round_down
-from rigidfluid.core.contact.substep import RESOLUTION
-from rigidfluid.core.contact.substep_path import MOST_SUBSTEPS
+from rigidfluid.core.contact.path.substep import RESOLUTION
+from rigidfluid.core.contact.path.substep_path import MOST_SUBSTEPS
 from rigidfluid.core.scene.run_tables import TimeTable
 
 QUESTION = "step"

@@ -9,7 +9,7 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.contact.broad_phase import near_pairs, near_walls
+from rigidfluid.core.contact.pairs.broad_phase import near_pairs, near_walls
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.geometry.facet_surface import FacetSurface, Nearby, nearby
 from rigidfluid.core.geometry.piece import Piece

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rigidfluid.core.contact.broad_phase import near_pairs
+from rigidfluid.core.contact.pairs.broad_phase import near_pairs
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.geometry.surface import Plane
 from rigidfluid.core.geometry.unit_sphere import unit_sphere_points

@@ -38,7 +38,7 @@ class SphereDetector(Detector):
     cost: ClassVar[float] = 1.0
 
     def __init__(self, options: PartOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
-        from rigidfluid.core.contact.near_pairs import NearPairs
+        from rigidfluid.core.contact.pairs.near_pairs import NearPairs
 
         super().__init__(options, bodies, walls)
         self._radii = np.array([_radius(index, body) for index, body in enumerate(bodies)], dtype=float)

@@ -16,7 +16,7 @@ from rigidfluid.core.geometry.mesher_unit import in_unit, mesher_unit
 from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.geometry.plane_of_facets import plane_around
 from rigidfluid.core.geometry.surface import Plane
-from rigidfluid.core.mesh.meshing import EdgeLengths, netgen_mesh, sides, surfaces_of
+from rigidfluid.core.mesh.generation.meshing import EdgeLengths, netgen_mesh, sides, surfaces_of
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.domains.closed_form import Flat, Form, components, form_of_edge, form_of_face

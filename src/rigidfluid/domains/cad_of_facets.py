@@ -7,7 +7,7 @@ from typing import Any
 from rigidfluid.core.geometry.arrays import IntArray
 from rigidfluid.core.geometry.facets import Facets
 from rigidfluid.core.geometry.mesher_unit import in_unit
-from rigidfluid.core.mesh.meshing import in_space
+from rigidfluid.core.mesh.generation.meshing import in_space
 
 
 def cad_of_facets(facets: Facets, unit: float) -> Any:

@@ -12,7 +12,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.geometry.stl_file import read_stl
-from rigidfluid.core.mesh.meshing import elements
+from rigidfluid.core.mesh.generation.meshing import elements
 from rigidfluid.domains.trial import require_survival
 from rigidfluid.errors import SceneError
 from rigidfluid.regular_file import MOST_GEOMETRY, require_regular

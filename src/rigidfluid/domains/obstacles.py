@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rigidfluid.core.contact.detector_choice import exact_detector
+from rigidfluid.core.contact.path.detector_choice import exact_detector
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.geometry.wall import Wall

@@ -16,7 +16,7 @@ from rigidfluid.core.geometry.mesher_unit import in_unit
 from rigidfluid.core.geometry.surface import Surface
 from rigidfluid.core.mechanics.frames import to_body_frame, to_world
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.mesh.meshing import in_space, sides, turned
+from rigidfluid.core.mesh.generation.meshing import in_space, sides, turned
 from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.types import Pose
 from rigidfluid.domains.cad_of_facets import cad_of_facets

@@ -6,7 +6,7 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from rigidfluid.core.contact.repulsion import Repulsion, RepulsionOptions
+from rigidfluid.core.contact.laws.repulsion import Repulsion, RepulsionOptions
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts

@@ -6,8 +6,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from rigidfluid.core.contact.balls import require_balls
-from rigidfluid.core.contact.repulsion import Repulsion, RepulsionOptions
+from rigidfluid.core.contact.laws.balls import require_balls
+from rigidfluid.core.contact.laws.repulsion import Repulsion, RepulsionOptions
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from rigidfluid.core.contact.repulsion import Repulsion, RepulsionOptions
+from rigidfluid.core.contact.laws.repulsion import Repulsion, RepulsionOptions
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.contact.broad_phase import near_pairs, near_walls
+from rigidfluid.core.contact.pairs.broad_phase import near_pairs, near_walls
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.wall import Wall, radius_of, wall_radii
 from rigidfluid.core.model.body import Body

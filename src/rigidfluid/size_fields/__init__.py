@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rigidfluid.core.mesh.size_interface import SizeField
+from rigidfluid.core.mesh.size.size_interface import SizeField
 from rigidfluid.hookspecs import hookimpl
 from rigidfluid.size_fields.vorticity import Vorticity
 

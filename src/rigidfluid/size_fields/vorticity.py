@@ -10,7 +10,7 @@ from pydantic import Field
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mesh.flow import Flow
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.size_interface import SizeField
+from rigidfluid.core.mesh.size.size_interface import SizeField
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.scene.table import Positive
 

@@ -15,12 +15,12 @@ from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Advance, Fields, FluidState, Mesh, Pose, Response, Step, Twist
-from rigidfluid.taylor_hood.coupled import CoupledMatrix
-from rigidfluid.taylor_hood.discretisation import Discretisation
-from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.system.coupled import CoupledMatrix
+from rigidfluid.taylor_hood.system.discretisation import Discretisation
 
 if TYPE_CHECKING:
-    from rigidfluid.taylor_hood.dimensionless import Dimensionless
+    from rigidfluid.taylor_hood.system.dimensionless import Dimensionless
 
 _PROVISIONAL = 1e-5
 """Relative residual of steps that will be solved again."""
@@ -79,9 +79,9 @@ class TaylorHoodBackend(FluidBackend):
 
     @final
     def initial(self, mesh: Mesh, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
-        from rigidfluid.taylor_hood.discretisation import kinetic_energy
-        from rigidfluid.taylor_hood.initial_flow import formula_flow, steady_flow
-        from rigidfluid.taylor_hood.transfer import initial
+        from rigidfluid.taylor_hood.stepping.initial_flow import formula_flow, steady_flow
+        from rigidfluid.taylor_hood.stepping.transfer import initial
+        from rigidfluid.taylor_hood.system.discretisation import kinetic_energy
 
         start = self.problem.initial
         target = self._steady_discretisation(mesh) if start == "steady" else self._projecting_discretisation(mesh)
@@ -96,7 +96,7 @@ class TaylorHoodBackend(FluidBackend):
 
     @final
     def struck(self, mesh: Mesh, pose: Pose, twist: Twist, step: Step) -> tuple[FluidState, float, Twist]:
-        from rigidfluid.taylor_hood.transfer import initial, struck
+        from rigidfluid.taylor_hood.stepping.transfer import initial, struck
 
         given = self.options.tolerance, mesh, pose
         motions = Twist(*np.split(step.prescribed_twist, [self.problem.dimension], axis=1))
@@ -115,15 +115,15 @@ class TaylorHoodBackend(FluidBackend):
 
     @final
     def response(self, fluid: FluidState, mesh: Mesh, step: Step, impulses: FloatArray) -> Response:
-        from rigidfluid.taylor_hood.response import response
+        from rigidfluid.taylor_hood.stepping.response import response
 
         discretisation = self._discretisation(mesh, step.prescribed)
         return response(discretisation, self._matrix(discretisation, fluid, mesh, step), step, impulses)
 
     @final
     def transfer(self, fluid: FluidState, old: Mesh, new: Mesh) -> tuple[FluidState, float]:
-        from rigidfluid.taylor_hood.discretisation import kinetic_energy
-        from rigidfluid.taylor_hood.transfer import Flow, transfer
+        from rigidfluid.taylor_hood.stepping.transfer import Flow, transfer
+        from rigidfluid.taylor_hood.system.discretisation import kinetic_energy
 
         numbering, present = self.numbering_of(old), self._any_discretisation(old)
         before = kinetic_energy(present, old.geometry, fluid["velocity"])
@@ -136,8 +136,8 @@ class TaylorHoodBackend(FluidBackend):
 
     @final
     def prediction_error(self, before: FluidState, after: FluidState, mesh: Mesh, extrapolation: FloatArray) -> float:
-        from rigidfluid.taylor_hood.advance import extrapolated
-        from rigidfluid.taylor_hood.discretisation import kinetic_energy
+        from rigidfluid.taylor_hood.stepping.advance import extrapolated
+        from rigidfluid.taylor_hood.system.discretisation import kinetic_energy
 
         missed = after["velocity"] - extrapolated(before, extrapolation)
         return kinetic_energy(self._any_discretisation(mesh), mesh.geometry, missed)
@@ -150,7 +150,7 @@ class TaylorHoodBackend(FluidBackend):
 
     @final
     def probe(self, fluid: FluidState, mesh: Mesh, points: FloatArray) -> tuple[FloatArray, FloatArray]:
-        from rigidfluid.taylor_hood.sampling import Samples
+        from rigidfluid.taylor_hood.elements.sampling import Samples
 
         # All processes ask alike: the root asks, and shares the answer.
         samples = Samples(mesh, self.numbering_of(mesh), points if mesh.ranks.is_root else points[:0])
@@ -163,19 +163,19 @@ class TaylorHoodBackend(FluidBackend):
 
     @final
     def state_shapes(self, mesh: Mesh, pose: Pose) -> dict[str, tuple[int, ...]]:
-        from rigidfluid.taylor_hood.state import state_shapes
+        from rigidfluid.taylor_hood.elements.state import state_shapes
 
         return state_shapes(Numbering.from_mesh(mesh), mesh, pose)
 
     @final
     def joined(self, states: Sequence[FluidState], parts: Sequence[Mesh], mesh: Mesh) -> FluidState:
-        from rigidfluid.taylor_hood.pieces import joined
+        from rigidfluid.taylor_hood.elements.pieces import joined
 
         return joined(states, parts, mesh)
 
     @final
     def cut(self, fluid: FluidState, mesh: Mesh, parts: Sequence[Mesh]) -> list[FluidState]:
-        from rigidfluid.taylor_hood.pieces import cut
+        from rigidfluid.taylor_hood.elements.pieces import cut
 
         return cut(fluid, mesh, parts)
 
@@ -192,7 +192,7 @@ class TaylorHoodBackend(FluidBackend):
         return self._numbering
 
     def _discretisation(self, mesh: Mesh, prescribed: BoolArray) -> Dimensionless:
-        from rigidfluid.taylor_hood.dimensionless import Dimensionless
+        from rigidfluid.taylor_hood.system.dimensionless import Dimensionless
 
         numbering = self.numbering_of(mesh)
         if self._latest is None or not np.array_equal(self._latest[0], prescribed):
@@ -202,7 +202,7 @@ class TaylorHoodBackend(FluidBackend):
 
     def _advanced(self, fluid: FluidState, mesh: Mesh, step: Step, tolerance: float) -> Advance:
         """One step to a ``tolerance``, from where the latest attempt at it has led."""
-        from rigidfluid.taylor_hood.advance import Equations, advance
+        from rigidfluid.taylor_hood.stepping.advance import Equations, advance
 
         discretisation = self._discretisation(mesh, step.prescribed)
         matrix = self._matrix(discretisation, fluid, mesh, step)
@@ -214,7 +214,7 @@ class TaylorHoodBackend(FluidBackend):
 
     def _matrix(self, discretisation: Discretisation, fluid: FluidState, mesh: Mesh, step: Step) -> CoupledMatrix:
         """A step is asked for its solution and then for its responses: its matrix is made once."""
-        from rigidfluid.taylor_hood.advance import step_matrix
+        from rigidfluid.taylor_hood.stepping.advance import step_matrix
 
         asked = fluid, mesh, step
         if self._latest_matrix is None or any(map(operator.is_not, self._latest_matrix[0], asked)):
@@ -225,7 +225,7 @@ class TaylorHoodBackend(FluidBackend):
         return self._discretisation(mesh, np.ones(self.problem.motions, dtype=bool))
 
     def _steady_discretisation(self, mesh: Mesh) -> Discretisation:
-        from rigidfluid.taylor_hood.dimensionless import Dimensionless
+        from rigidfluid.taylor_hood.system.dimensionless import Dimensionless
 
         prescribed = np.ones(self.problem.motions, dtype=bool)
         return Dimensionless(self.discretise_steady(self.numbering_of(mesh), mesh, prescribed), mesh)

@@ -13,14 +13,14 @@ from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import FluidState, Mesh, SolverCost
 from rigidfluid.taylor_hood.backend import TaylorHoodBackend, TaylorHoodOptions
-from rigidfluid.taylor_hood.numbering import Numbering
-from rigidfluid.taylor_hood.predicted_cost import predicted_factors, predicted_run, predicted_unknowns
-from rigidfluid.taylor_hood.solvers import Solvers
+from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.linear_solver.predicted_cost import predicted_factors, predicted_run, predicted_unknowns
+from rigidfluid.taylor_hood.linear_solver.solvers import Solvers
 
 if TYPE_CHECKING:
-    from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
-    from rigidfluid.taylor_hood.parts import Parts
-    from rigidfluid.taylor_hood.sparse import Assembly, SparseDiscretisation
+    from rigidfluid.taylor_hood.linear_solver.lagged_solver import LaggedSolver
+    from rigidfluid.taylor_hood.linear_solver.sparse import Assembly, SparseDiscretisation
+    from rigidfluid.taylor_hood.system.parts import Parts
 
 _DEAR = 1.0
 """Factors in 3D that are predicted to take as many seconds, with 22,000 unknowns and 180 MB, cost more than blocks."""
@@ -47,8 +47,8 @@ class SparseBackend(TaylorHoodBackend):
     options: SparseOptions
 
     def __init__(self, options: PartOptions, problem: FluidProblem | None) -> None:
-        from rigidfluid.taylor_hood.lagged_factors import LaggedFactors
-        from rigidfluid.taylor_hood.pardiso import Orderings
+        from rigidfluid.taylor_hood.linear_solver.lagged_factors import LaggedFactors
+        from rigidfluid.taylor_hood.linear_solver.pardiso import Orderings
         from rigidfluid.taylor_hood.schur.lagged_schur import LaggedSchur
 
         super().__init__(options, problem)
@@ -77,7 +77,7 @@ class SparseBackend(TaylorHoodBackend):
     def _discretised(
         self, numbering: Numbering, mesh: Mesh, prescribed: BoolArray, method: str
     ) -> SparseDiscretisation:
-        from rigidfluid.taylor_hood.sparse import SparseDiscretisation
+        from rigidfluid.taylor_hood.linear_solver.sparse import SparseDiscretisation
 
         if self._assembly is None or self._assembly.numbering is not numbering:
             self._assembly = self.assembly(numbering)
@@ -86,7 +86,7 @@ class SparseBackend(TaylorHoodBackend):
 
     @final
     def memory(self) -> FluidState:
-        from rigidfluid.taylor_hood.sparse import SparseDiscretisation
+        from rigidfluid.taylor_hood.linear_solver.sparse import SparseDiscretisation
 
         self._latest_attempt = None
         if self._latest is None:
@@ -97,7 +97,7 @@ class SparseBackend(TaylorHoodBackend):
 
     @final
     def recall(self, memory: FluidState, mesh: Mesh) -> None:
-        from rigidfluid.taylor_hood.sparse import SparseDiscretisation
+        from rigidfluid.taylor_hood.linear_solver.sparse import SparseDiscretisation
 
         self.forget()
         if memory:

@@ -16,7 +16,7 @@ from rigidfluid.core.geometry.surface import Plane
 from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.mechanics.frames import distance_to_body, to_world
 from rigidfluid.core.mechanics.rigid import rotate, rotation_matrices
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.core.setup.geometry_checks import surfaces_of
@@ -154,7 +154,7 @@ def in_a_box(
 
     def make_mesh() -> Mesh:
         from rigidfluid.core.mesh.fluid_domain import FluidDomain
-        from rigidfluid.core.mesh.meshing import generate_mesh
+        from rigidfluid.core.mesh.generation.meshing import generate_mesh
 
         return generate_mesh(FluidDomain(bodies, pose, box, walls), Sizes(*sizes, 0.5))
 

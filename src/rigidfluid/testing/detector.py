@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
-from rigidfluid.core.contact.detection import detection_by
+from rigidfluid.core.contact.path.detection import detection_by
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.model.detector import Detector

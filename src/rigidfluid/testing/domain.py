@@ -10,12 +10,12 @@ import pytest
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.piece import Piece
-from rigidfluid.core.mesh.fill import fill_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
+from rigidfluid.core.mesh.generation.fill import fill_mesh
+from rigidfluid.core.mesh.generation.meshing import generate_mesh
+from rigidfluid.core.mesh.generation.refine_surface import bisect, edges_of_facets, middles_on_surfaces, one_per_cell
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
-from rigidfluid.core.mesh.meshing import generate_mesh
-from rigidfluid.core.mesh.refine_surface import bisect, edges_of_facets, middles_on_surfaces, one_per_cell
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.types import Mesh, Pose
 

@@ -12,7 +12,7 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.mesh.flow import AtRest, Flow
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.size_interface import SizeField
+from rigidfluid.core.mesh.size.size_interface import SizeField
 from rigidfluid.core.model.types import Pose, Twist
 from rigidfluid.domains.box import Box, BoxOptions
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rigidfluid.backends.scikit_fem.assembly import reference_tables
-from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.elements.numbering import Numbering
 
 
 @pytest.mark.parametrize(

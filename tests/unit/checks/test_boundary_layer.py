@@ -14,7 +14,7 @@ from rigidfluid.checks import Finding, check
 from rigidfluid.core.case.load import load_scene
 from rigidfluid.core.case.system import build_system
 from rigidfluid.core.mechanics.boundary_layer import CELLS_WANTED, boundary_layers
-from rigidfluid.core.mesh.layer_cells import FEWEST_CELLS
+from rigidfluid.core.mesh.generation.layer_cells import FEWEST_CELLS
 from rigidfluid.core.run.remarks import layer_remarks
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.errors import SceneError

@@ -18,7 +18,7 @@ from rigidfluid.checks.finding import round_down, round_up
 from rigidfluid.cli import app
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
-from rigidfluid.core.contact.representative_contacts import representatives
+from rigidfluid.core.contact.pairs.representative_contacts import representatives
 
 RADIUS, RANGE, GRAVITY, HEIGHT = 0.1, 0.02, 10.0, 0.5
 MASS = 3.0 * np.pi * RADIUS**2
@@ -448,12 +448,12 @@ def test_command_names_the_file_that_it_cannot_write(tmp_path: Path) -> None:
 
 
 def test_no_mesh_and_no_factorisation(monkeypatch: pytest.MonkeyPatch) -> None:
-    import rigidfluid.core.mesh.meshing
+    import rigidfluid.core.mesh.generation.meshing
 
     def refused(*_: object, **__: object) -> None:
         raise AssertionError("a mesh")
 
-    monkeypatch.setattr(rigidfluid.core.mesh.meshing, "run_netgen", refused)
+    monkeypatch.setattr(rigidfluid.core.mesh.generation.meshing, "run_netgen", refused)
     assert report(**WET, **MESH).findings
 
 
@@ -570,7 +570,7 @@ def test_auto_stops_a_stack_at_the_smallest_gap() -> None:
 
 def test_the_check_asks_a_law_at_as_many_gaps_as_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
     """The law `contact` is stiffest at 2/3 of its range, which lies between two of the gaps."""
-    from rigidfluid.core.contact import stiffness
+    from rigidfluid.core.contact.laws import stiffness
 
     scene = tables(contact={"law": "contact", "epsilon": 1e-12})
     (finding,) = answers(scene, "step")

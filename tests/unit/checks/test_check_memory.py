@@ -13,7 +13,7 @@ from rigidfluid.checks.machine_speed import machine_speed
 from rigidfluid.checks.run_size import RunSize
 from rigidfluid.core.case.load import load_scene
 from rigidfluid.core.case.system import build_system
-from rigidfluid.core.mesh.cell_count import Count
+from rigidfluid.core.mesh.generation.cell_count import Count
 from rigidfluid.core.model.types import SolverCost
 from rigidfluid.core.scene.scene import Scene
 

@@ -7,7 +7,7 @@ from unknown_shapes import Cross
 
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
-from rigidfluid.core.contact.detector_choice import choose_detector
+from rigidfluid.core.contact.path.detector_choice import choose_detector
 from rigidfluid.core.run.run import run
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import SceneError

@@ -17,11 +17,11 @@ from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.case.schema import json_schema
 from rigidfluid.core.case.system import build_system
 from rigidfluid.core.geometry.facets import Facets
+from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
+from rigidfluid.core.mesh.generation.meshing import generate_mesh
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
-from rigidfluid.core.mesh.meshing import generate_mesh
-from rigidfluid.core.mesh.remesh import initial_mesh
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.nested.bodies import NestedBodyTable
 from rigidfluid.core.setup.geometry_checks import surfaces_of
 from rigidfluid.detectors.sphere import SphereDetector

@@ -22,10 +22,10 @@ from rigidfluid.core.geometry.facet_surface import FacetSurface
 from rigidfluid.core.geometry.facets import Facets
 from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.geometry.wrong import Wrong
+from rigidfluid.core.mesh.adaptation.mesh_motion import MeshMotion, held_components
+from rigidfluid.core.mesh.adaptation.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.mesh_motion import MeshMotion, held_components
-from rigidfluid.core.mesh.remesh import initial_mesh, remesh
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_mesh
 from rigidfluid.core.model.contact_results import refuse_odd
 from rigidfluid.core.model.detector import Detector

@@ -14,11 +14,11 @@ from mesh_tools import ball, nobody, upright
 from scipy.spatial import Delaunay
 
 from rigidfluid.core.geometry.facets import area_vectors
+from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
+from rigidfluid.core.mesh.generation.meshing import generate_mesh
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
-from rigidfluid.core.mesh.meshing import generate_mesh
-from rigidfluid.core.mesh.remesh import initial_mesh
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.mesh.topology import boundary_facets, check_mesh
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.setup.geometry_checks import surfaces_of

@@ -8,8 +8,8 @@ from numba import njit
 
 from rigidfluid.core.geometry.simplices import facet_to_facet
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.meshing import generate_mesh
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.generation.meshing import generate_mesh
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.mesh.topology import boundary_facets
 from rigidfluid.core.model.types import Contacts, Mesh
 from rigidfluid.detectors.fast_marching import FastMarchingDetector

@@ -8,7 +8,7 @@ import numpy as np
 
 from rigidfluid.backends.scikit_fem.backend import ScikitFem
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.taylor_hood.advance import Equations, step_matrix
+from rigidfluid.taylor_hood.stepping.advance import Equations, step_matrix
 from rigidfluid.testing.fluid.boxes import box, nobody
 from rigidfluid.testing.fluid.exact import DENSITY, problem
 from rigidfluid.testing.fluid.flow import Flow

@@ -8,9 +8,9 @@ import pytest
 from rigidfluid.core.fluid.conditions import BoundaryCondition, NoSlip, PrescribedPressure, Slip
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.types import Mesh
-from rigidfluid.taylor_hood.facet_integrals import area_vectors, into_fluid, normals_at_nodes
-from rigidfluid.taylor_hood.numbering import Numbering
-from rigidfluid.taylor_hood.surfaces import Surfaces
+from rigidfluid.taylor_hood.elements.facet_integrals import area_vectors, into_fluid, normals_at_nodes
+from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.elements.surfaces import Surfaces
 from rigidfluid.testing.fluid.boxes import box
 from rigidfluid.testing.fluid.curved import CENTRE, RADIUS, ball_in_a_box
 

@@ -11,11 +11,11 @@ import pytest
 from scipy import sparse
 
 from rigidfluid.errors import StepRejected
-from rigidfluid.taylor_hood import pardiso
-from rigidfluid.taylor_hood.factorization import factorise
-from rigidfluid.taylor_hood.lagged_factors import LaggedFactors
-from rigidfluid.taylor_hood.lagged_solver import Operator
-from rigidfluid.taylor_hood.pardiso import EXACT, FAST, Orderings, Pardiso, PardisoError
+from rigidfluid.taylor_hood.linear_solver import pardiso
+from rigidfluid.taylor_hood.linear_solver.factorization import factorise
+from rigidfluid.taylor_hood.linear_solver.lagged_factors import LaggedFactors
+from rigidfluid.taylor_hood.linear_solver.lagged_solver import Operator
+from rigidfluid.taylor_hood.linear_solver.pardiso import EXACT, FAST, Orderings, Pardiso, PardisoError
 
 N = 400
 RIGHT = np.cos(np.arange(N))

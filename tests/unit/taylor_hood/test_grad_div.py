@@ -8,10 +8,10 @@ from skfem import Basis, BilinearForm, ElementTetP2, ElementTriP2, ElementVector
 from skfem.helpers import ddot, div, dot, grad, mul, transpose
 
 from rigidfluid.backends.scikit_fem.assembly import CompiledAssembly
-from rigidfluid.taylor_hood.coefficients import Coefficients
-from rigidfluid.taylor_hood.coupled import CoupledMatrix
-from rigidfluid.taylor_hood.grad_div import grad_div_coefficient
-from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.system.coefficients import Coefficients
+from rigidfluid.taylor_hood.system.coupled import CoupledMatrix
+from rigidfluid.taylor_hood.system.grad_div import grad_div_coefficient
 from rigidfluid.testing.fluid.boxes import box
 
 

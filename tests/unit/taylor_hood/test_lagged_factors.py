@@ -7,9 +7,9 @@ import pytest
 from scipy import sparse
 
 from rigidfluid.errors import StepRejected
-from rigidfluid.taylor_hood import lagged_factors
-from rigidfluid.taylor_hood.lagged_factors import LaggedFactors
-from rigidfluid.taylor_hood.lagged_solver import Operator
+from rigidfluid.taylor_hood.linear_solver import lagged_factors
+from rigidfluid.taylor_hood.linear_solver.lagged_factors import LaggedFactors
+from rigidfluid.taylor_hood.linear_solver.lagged_solver import Operator
 
 N = 200
 RIGHT = np.eye(N)[0]

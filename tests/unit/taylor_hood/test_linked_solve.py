@@ -7,7 +7,7 @@ import pytest
 
 from rigidfluid.core.model.types import Links
 from rigidfluid.errors import StepRejected
-from rigidfluid.taylor_hood.links import solve_linked
+from rigidfluid.taylor_hood.system.links import solve_linked
 
 
 def test_two_links_that_hold_the_same_reject_the_step():

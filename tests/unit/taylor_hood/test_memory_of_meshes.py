@@ -6,7 +6,7 @@ import weakref
 from falling import falling_disk
 
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.taylor_hood.sparse import SparseDiscretisation
+from rigidfluid.taylor_hood.linear_solver.sparse import SparseDiscretisation
 
 
 def test_the_equations_of_one_mesh_alone_are_kept(monkeypatch):

@@ -7,7 +7,7 @@ from threaded_ranks import on_ranks
 
 from rigidfluid.core.mesh.distribution import distributed
 from rigidfluid.core.model.types import Mesh
-from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.elements.numbering import Numbering
 
 
 def places(mesh):

@@ -6,8 +6,8 @@ from marching_meshes import stars
 
 from rigidfluid.core.mesh.distribution import partition, parts_of
 from rigidfluid.core.model.types import CurvedEdges, Mesh
-from rigidfluid.taylor_hood.numbering import Numbering
-from rigidfluid.taylor_hood.pieces import cut, joined
+from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.elements.pieces import cut, joined
 
 
 def bent(mesh, rng):

@@ -8,9 +8,14 @@ import pytest
 from falling import SCENES, falling_disk
 
 import rigidfluid
-from rigidfluid.core.mesh.mmg import MESHER_MEMORY
+from rigidfluid.core.mesh.adaptation.mmg import MESHER_MEMORY
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.taylor_hood.predicted_cost import predicted_blocks, predicted_factors, predicted_run, predicted_unknowns
+from rigidfluid.taylor_hood.linear_solver.predicted_cost import (
+    predicted_blocks,
+    predicted_factors,
+    predicted_run,
+    predicted_unknowns,
+)
 
 MEASURED = [  # dimension, unknowns, bytes, CPU seconds of analysis and factors
     (2, 11_627, 19_589 * 1024, 0.07),
@@ -91,7 +96,7 @@ import sys
 from pathlib import Path
 import mmgpy
 from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
-from rigidfluid.core.mesh.remesh import inserted_mesh, remesh
+from rigidfluid.core.mesh.adaptation.remesh import inserted_mesh, remesh
 from rigidfluid.core.run.mesh_keys import inserter_of, sizes_of
 from rigidfluid.core.case.system import build_system
 from rigidfluid.core.case.load import load_scene

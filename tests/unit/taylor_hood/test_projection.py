@@ -12,9 +12,9 @@ from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.mesh.topology import boundary_facets, distinct_edges
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import StepRejected
-from rigidfluid.taylor_hood import projection as module
-from rigidfluid.taylor_hood.coefficients import Coefficients
-from rigidfluid.taylor_hood.coupled_projection import CoupledProjection
+from rigidfluid.taylor_hood.linear_solver import projection as module
+from rigidfluid.taylor_hood.system.coefficients import Coefficients
+from rigidfluid.taylor_hood.system.coupled_projection import CoupledProjection
 
 BALL = wet_tables(
     {"type": "sphere", "radius": 0.4, "density": 1.5, "position": [1.0, 1.1, 1.0], "velocity": [1.0, 0.5, 0.0]},

@@ -8,8 +8,8 @@ from scipy import sparse
 
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.taylor_hood.coefficients import Coefficients
-from rigidfluid.taylor_hood.sparse import SparseDiscretisation
+from rigidfluid.taylor_hood.linear_solver.sparse import SparseDiscretisation
+from rigidfluid.taylor_hood.system.coefficients import Coefficients
 
 BALLS = wet_tables(
     {"type": "ellipsoid", "semi_axes": [0.4, 0.3, 0.25], "density": 1.5, "position": [1.0, 1.3, 1.0]},

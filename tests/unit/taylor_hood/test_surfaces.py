@@ -9,8 +9,8 @@ import pytest
 
 from rigidfluid.core.case.expressions import VectorExpression
 from rigidfluid.core.fluid.conditions import PrescribedVelocity
-from rigidfluid.taylor_hood.numbering import Numbering
-from rigidfluid.taylor_hood.surfaces import Surfaces, pressure_pin_vertex
+from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.elements.surfaces import Surfaces, pressure_pin_vertex
 from rigidfluid.testing.fluid.boxes import box, box_with_balls
 from rigidfluid.testing.fluid.exact import problem
 
@@ -34,7 +34,7 @@ def test_the_pressure_pin_is_the_inner_vertex_farthest_from_bodies(
     most_pairs: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Among all pairs of vertices, and by a tree."""
-    monkeypatch.setattr("rigidfluid.taylor_hood.surfaces._FEW", most_pairs)
+    monkeypatch.setattr("rigidfluid.taylor_hood.elements.surfaces._FEW", most_pairs)
     mesh = box_with_balls(2)
     surfaces = Surfaces(Numbering(mesh.cells, len(mesh.points)), mesh, problem(2, bodies=2).conditions, (0, 1))
     inner = np.setdiff1d(np.arange(len(mesh.points)), mesh.facets)

@@ -10,14 +10,14 @@ from rigidfluid.core.mechanics.rigid import moment
 from rigidfluid.core.mechanics.time_scheme import predict_pose
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.taylor_hood.coefficients import Coefficients
-from rigidfluid.taylor_hood.constraint import Constraint
-from rigidfluid.taylor_hood.discretisation import kinetic_energy
-from rigidfluid.taylor_hood.numbering import Numbering
-from rigidfluid.taylor_hood.projection import SparseProjection
-from rigidfluid.taylor_hood.sparse import SparseDiscretisation
-from rigidfluid.taylor_hood.surfaces import Surfaces, rigid_velocity
-from rigidfluid.taylor_hood.transfer import _scale
+from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.elements.surfaces import Surfaces, rigid_velocity
+from rigidfluid.taylor_hood.linear_solver.projection import SparseProjection
+from rigidfluid.taylor_hood.linear_solver.sparse import SparseDiscretisation
+from rigidfluid.taylor_hood.stepping.transfer import _scale
+from rigidfluid.taylor_hood.system.coefficients import Coefficients
+from rigidfluid.taylor_hood.system.constraint import Constraint
+from rigidfluid.taylor_hood.system.discretisation import kinetic_energy
 
 SHORT = {"time": {"step": 0.004, "end": 0.016}, "mesh": {"size": 0.3, "size_body": 0.05}, "output": {"every": 0.008}}
 

@@ -9,9 +9,9 @@ import numpy as np
 from scipy import sparse
 
 from rigidfluid.api import FloatArray, IntArray
-from rigidfluid.taylor_hood.coefficients import Coefficients
-from rigidfluid.taylor_hood.numbering import Numbering
-from rigidfluid.taylor_hood.projection import Masses
+from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.linear_solver.projection import Masses
+from rigidfluid.taylor_hood.system.coefficients import Coefficients
 from rigidfluid_ngsolve.mesh import NodeMesh
 
 _ORDER_OF_FIELD = 2

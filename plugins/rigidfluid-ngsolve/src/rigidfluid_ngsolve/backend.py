@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar, final
 
-from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.sparse_backend import SparseBackend
 
 if TYPE_CHECKING:

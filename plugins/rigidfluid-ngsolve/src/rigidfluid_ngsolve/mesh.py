@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from rigidfluid.api import FloatArray
-from rigidfluid.taylor_hood.numbering import EDGES, Numbering
+from rigidfluid.taylor_hood.elements.numbering import EDGES, Numbering
 
 # Netgen's quadratic cells: the edges of a triangle or tetrahedron in the order of the nodes at their midpoints.
 _NETGEN_EDGES = {2: ((1, 2), (0, 2), (0, 1)), 3: ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))}

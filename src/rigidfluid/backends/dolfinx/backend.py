@@ -13,9 +13,9 @@ from rigidfluid.core.model.extension import Extension
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.taylor_hood.backend import TaylorHoodBackend
-from rigidfluid.taylor_hood.discretisation import Discretisation
-from rigidfluid.taylor_hood.numbering import Numbering
-from rigidfluid.taylor_hood.solvers import Solvers
+from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.linear_solver.solvers import Solvers
+from rigidfluid.taylor_hood.system.discretisation import Discretisation
 
 if TYPE_CHECKING:
     from rigidfluid.backends.dolfinx.discretisation import Topology

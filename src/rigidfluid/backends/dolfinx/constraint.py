@@ -1,4 +1,4 @@
-"""The constraint matrix P of `rigidfluid.taylor_hood.constraint`, distributed.
+"""The constraint matrix P of `rigidfluid.taylor_hood.system.constraint`, distributed.
 
 Columns of each process are its own free velocities first, next all twists on the root, and then its free pressures.
 """
@@ -13,8 +13,8 @@ from scipy import sparse
 
 from rigidfluid.backends.dolfinx.space import Space
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
-from rigidfluid.taylor_hood.constraint import CROSS
-from rigidfluid.taylor_hood.surfaces import Surfaces, joined
+from rigidfluid.taylor_hood.elements.surfaces import Surfaces, joined
+from rigidfluid.taylor_hood.system.constraint import CROSS
 
 
 class DistributedConstraint:

@@ -17,13 +17,13 @@ from rigidfluid.backends.dolfinx.space import Space
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.model.types import Mesh
-from rigidfluid.taylor_hood.coefficients import coefficients_of
-from rigidfluid.taylor_hood.coupled import CoupledMatrix, CoupledSystem, Solution
-from rigidfluid.taylor_hood.coupled_projection import CoupledProjection
-from rigidfluid.taylor_hood.lagged_solver import Operator
-from rigidfluid.taylor_hood.numbering import Numbering
-from rigidfluid.taylor_hood.solvers import Solvers
-from rigidfluid.taylor_hood.surfaces import Surfaces, pressure_pin_vertex
+from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.elements.surfaces import Surfaces, pressure_pin_vertex
+from rigidfluid.taylor_hood.linear_solver.lagged_solver import Operator
+from rigidfluid.taylor_hood.linear_solver.solvers import Solvers
+from rigidfluid.taylor_hood.system.coefficients import coefficients_of
+from rigidfluid.taylor_hood.system.coupled import CoupledMatrix, CoupledSystem, Solution
+from rigidfluid.taylor_hood.system.coupled_projection import CoupledProjection
 
 
 class Topology:

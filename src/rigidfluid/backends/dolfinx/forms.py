@@ -13,7 +13,7 @@ from dolfinx.mesh import meshtags
 from rigidfluid.backends.dolfinx import compat
 from rigidfluid.backends.dolfinx.space import Space
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.taylor_hood.coefficients import Coefficients
+from rigidfluid.taylor_hood.system.coefficients import Coefficients
 
 _STRAIGHT, _CURVED = 1, 2
 _DEGREE_IN_CURVED_CELLS = {2: 6, 3: 7}

@@ -16,8 +16,8 @@ from rigidfluid.backends.dolfinx.schur import CahouetChabard
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.ranks import Ranks
 from rigidfluid.errors import StepRejected
-from rigidfluid.taylor_hood.lagged_factors import LaggedFactors
-from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
+from rigidfluid.taylor_hood.linear_solver.lagged_factors import LaggedFactors
+from rigidfluid.taylor_hood.linear_solver.lagged_solver import LaggedSolver
 
 Settings = Mapping[str, str | float | int | bool]
 _PREFIX = "rigidfluid_"

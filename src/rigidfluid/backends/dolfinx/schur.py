@@ -12,8 +12,8 @@ from petsc4py import PETSc
 from rigidfluid.backends.dolfinx.forms import Forms
 from rigidfluid.backends.dolfinx.space import Space
 from rigidfluid.core.geometry.arrays import BoolArray
-from rigidfluid.taylor_hood.coefficients import Coefficients
-from rigidfluid.taylor_hood.surfaces import Surfaces
+from rigidfluid.taylor_hood.elements.surfaces import Surfaces
+from rigidfluid.taylor_hood.system.coefficients import Coefficients
 
 
 @dataclass(frozen=True)

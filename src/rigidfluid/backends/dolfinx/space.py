@@ -15,7 +15,7 @@ from rigidfluid.backends.dolfinx import compat
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.model.ranks import MpiRanks
 from rigidfluid.core.model.types import Mesh
-from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.elements.numbering import Numbering
 
 # Edges of Basix' reference simplices, in the order of its P2 nodes.
 _EDGES = {2: ((1, 2), (0, 2), (0, 1)), 3: ((2, 3), (1, 3), (1, 2), (0, 3), (0, 2), (0, 1))}

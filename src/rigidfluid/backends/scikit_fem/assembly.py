@@ -10,9 +10,9 @@ from scipy import sparse
 
 from rigidfluid.backends.scikit_fem import kernels
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
-from rigidfluid.taylor_hood.coefficients import Coefficients
-from rigidfluid.taylor_hood.numbering import Numbering
-from rigidfluid.taylor_hood.projection import Masses
+from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.linear_solver.projection import Masses
+from rigidfluid.taylor_hood.system.coefficients import Coefficients
 
 
 class Rule(NamedTuple):

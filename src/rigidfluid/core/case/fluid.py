@@ -6,7 +6,7 @@ from functools import partial
 
 from rigidfluid.core.case.expressions import VectorExpression
 from rigidfluid.core.fluid.material import Newtonian
-from rigidfluid.core.mesh.size_interface import SizeField
+from rigidfluid.core.mesh.size.size_interface import SizeField
 from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.nested.part_options import build_part, read_part

@@ -15,7 +15,7 @@ from rigidfluid.core.case.laws import scene_laws
 from rigidfluid.core.case.mechanisms import placed_mechanisms
 from rigidfluid.core.case.periodic import periodic_pairs
 from rigidfluid.core.case.table_values import values_of
-from rigidfluid.core.contact.detector_choice import choose_detector
+from rigidfluid.core.contact.path.detector_choice import choose_detector
 from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.domain import Domain

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.contact.substep import relative_motion
+from rigidfluid.core.contact.path.substep import relative_motion
 from rigidfluid.core.coupling.scheme import Scheme
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.state import State

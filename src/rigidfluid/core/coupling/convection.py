@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.contact.body_step import BodyStep
+from rigidfluid.core.contact.path.body_step import BodyStep
 from rigidfluid.core.coupling.impulse_responses import CHANGED
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.motions import reaches, round_motions

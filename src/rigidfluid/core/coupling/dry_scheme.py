@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from rigidfluid.core.contact.body_step import BodyStep
-from rigidfluid.core.contact.implicit_path import implicit_free
-from rigidfluid.core.contact.look_ahead import look_ahead
-from rigidfluid.core.contact.substep_path import SubstepPath, fly_freely
+from rigidfluid.core.contact.path.body_step import BodyStep
+from rigidfluid.core.contact.path.implicit_path import implicit_free
+from rigidfluid.core.contact.path.look_ahead import look_ahead
+from rigidfluid.core.contact.path.substep_path import SubstepPath, fly_freely
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.motions import body_load
 from rigidfluid.core.model.dynamics import BodyDynamics, ImpulsiveDynamics

@@ -8,12 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from rigidfluid.core.contact.body_step import BodyStep, undisturbed
-from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
-from rigidfluid.core.contact.gap_changes import change_too_fast
-from rigidfluid.core.contact.implicit_path import implicit_coupled
-from rigidfluid.core.contact.look_ahead import near_contacts
-from rigidfluid.core.contact.substep_path import SubstepPath
+from rigidfluid.core.contact.pairs.extrapolated_contacts import ExtrapolatedContacts
+from rigidfluid.core.contact.pairs.gap_changes import change_too_fast
+from rigidfluid.core.contact.path.body_step import BodyStep, undisturbed
+from rigidfluid.core.contact.path.implicit_path import implicit_coupled
+from rigidfluid.core.contact.path.look_ahead import near_contacts
+from rigidfluid.core.contact.path.substep_path import SubstepPath
 from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.coupling.impulse_responses import updated_model
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray

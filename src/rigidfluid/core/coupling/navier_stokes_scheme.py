@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from rigidfluid.core.contact.body_step import BodyStep
-from rigidfluid.core.contact.contact_load import contact_load
-from rigidfluid.core.contact.substep_path import SubstepPath
+from rigidfluid.core.contact.path.body_step import BodyStep
+from rigidfluid.core.contact.path.contact_load import contact_load
+from rigidfluid.core.contact.path.substep_path import SubstepPath
 from rigidfluid.core.coupling.convection import turning
 from rigidfluid.core.coupling.expected_load import expected_load, load_before
 from rigidfluid.core.coupling.fluid_scheme import FluidScheme

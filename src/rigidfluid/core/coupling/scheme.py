@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-from rigidfluid.core.contact.body_step import BodyStep
+from rigidfluid.core.contact.path.body_step import BodyStep
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.reduced_model import Coupling
 from rigidfluid.core.model.state import State

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rigidfluid.core.contact.body_step import BodyStep
+from rigidfluid.core.contact.path.body_step import BodyStep
 from rigidfluid.core.model.state import State
 
 FELT, STORED = 3e-5, 1e-2

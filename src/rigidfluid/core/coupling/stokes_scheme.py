@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rigidfluid.core.contact.body_step import BodyStep
+from rigidfluid.core.contact.path.body_step import BodyStep
 from rigidfluid.core.coupling.expected_load import load_before
 from rigidfluid.core.coupling.fluid_scheme import FluidScheme
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rigidfluid.core.contact.proximity import detect_contacts_and_gaps
-from rigidfluid.core.contact.spot_check import spot_check
+from rigidfluid.core.contact.laws.spot_check import spot_check
+from rigidfluid.core.contact.pairs.proximity import detect_contacts_and_gaps
 from rigidfluid.core.mechanics.wrenches import nothing
-from rigidfluid.core.mesh.updater import Updater
+from rigidfluid.core.mesh.adaptation.updater import Updater
 from rigidfluid.core.model.energy import Ledger, Power
 from rigidfluid.core.model.state import MotionState, State
 from rigidfluid.core.model.system import System

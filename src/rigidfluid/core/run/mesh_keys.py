@@ -5,14 +5,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.mesh.inserter import Inserter
-from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater, Renewal
-from rigidfluid.core.mesh.no_mesh import NoMesh
-from rigidfluid.core.mesh.regions import RefinedBox, Region, curved_walls
-from rigidfluid.core.mesh.size_field import Sizes
-from rigidfluid.core.mesh.size_interface import SizeField
-from rigidfluid.core.mesh.updater import Updater
-from rigidfluid.core.mesh.wake import Wake
+from rigidfluid.core.mesh.adaptation.mesh_adaptation import MeshUpdater, Renewal
+from rigidfluid.core.mesh.adaptation.no_mesh import NoMesh
+from rigidfluid.core.mesh.adaptation.updater import Updater
+from rigidfluid.core.mesh.generation.inserter import Inserter
+from rigidfluid.core.mesh.size.regions import RefinedBox, Region, curved_walls
+from rigidfluid.core.mesh.size.size_field import Sizes
+from rigidfluid.core.mesh.size.size_interface import SizeField
+from rigidfluid.core.mesh.size.wake import Wake
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.system import System
 from rigidfluid.core.run.clock import Clock

@@ -9,7 +9,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.boundary_layer import CELLS_WANTED
-from rigidfluid.core.mesh.layer_cells import FEWEST_CELLS, thinnest_layer
+from rigidfluid.core.mesh.generation.layer_cells import FEWEST_CELLS, thinnest_layer
 from rigidfluid.core.model.system import System
 
 

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.contact.body_step import BodyStep
-from rigidfluid.core.contact.proximity import detect_contacts_and_gaps, refuse_overlap
+from rigidfluid.core.contact.pairs.proximity import detect_contacts_and_gaps, refuse_overlap
+from rigidfluid.core.contact.path.body_step import BodyStep
 from rigidfluid.core.coupling.scheme import Scheme
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.actuators import BodiesAfter, actuator_work
@@ -17,7 +17,7 @@ from rigidfluid.core.mechanics.kinematics import prescribed_part
 from rigidfluid.core.mechanics.motions import applied_wrench, kinematics_now
 from rigidfluid.core.mechanics.rigid import kinetic_energy, rotation_between
 from rigidfluid.core.mechanics.wrenches import flat, power, wrench_of, wrench_sum
-from rigidfluid.core.mesh.updater import Updater
+from rigidfluid.core.mesh.adaptation.updater import Updater
 from rigidfluid.core.model.energy import Ledger, Power, Work
 from rigidfluid.core.model.part_results import refuse_lost_pose
 from rigidfluid.core.model.state import LinkLoad, MotionState, Past, State

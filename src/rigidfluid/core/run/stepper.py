@@ -7,13 +7,13 @@ from functools import partial
 
 import numpy as np
 
-from rigidfluid.core.contact.body_step import BodyStep, first_step_again
-from rigidfluid.core.contact.gap_changes import CLOSEST_APPROACH, WIDEST_OPENING
-from rigidfluid.core.contact.spot_check import is_due, spot_check
+from rigidfluid.core.contact.laws.spot_check import is_due, spot_check
+from rigidfluid.core.contact.pairs.gap_changes import CLOSEST_APPROACH, WIDEST_OPENING
+from rigidfluid.core.contact.path.body_step import BodyStep, first_step_again
 from rigidfluid.core.coupling.scheme import Scheme
 from rigidfluid.core.coupling.schemes import scheme_of
 from rigidfluid.core.geometry.value_types import describe
-from rigidfluid.core.mesh.updater import Updater
+from rigidfluid.core.mesh.adaptation.updater import Updater
 from rigidfluid.core.model.reduced_model import Coupling
 from rigidfluid.core.model.replaceable import Replaceable
 from rigidfluid.core.model.state import State

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rigidfluid.core.contact.strength import chosen_strengths
+from rigidfluid.core.contact.laws.strength import chosen_strengths
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.energy import Ledger

@@ -8,7 +8,7 @@ from functools import cache, partial
 
 import numpy as np
 
-from rigidfluid.core.contact.detection import detection_by
+from rigidfluid.core.contact.path.detection import detection_by
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.mechanics.rotational_factors import rotational_factors

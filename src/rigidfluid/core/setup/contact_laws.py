@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
-from rigidfluid.core.contact.film_loss import FilmLoss
-from rigidfluid.core.contact.restitution import Restitution
+from rigidfluid.core.contact.laws.film_loss import FilmLoss
+from rigidfluid.core.contact.laws.restitution import Restitution
 from rigidfluid.core.geometry.piece import Piece, all_names
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.interactions import Between, Interaction

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rigidfluid.core.contact.restitution import Restitution, without_restitution
+from rigidfluid.core.contact.laws.restitution import Restitution, without_restitution
 
 if TYPE_CHECKING:
     from rigidfluid.core.fluid.fluid_problem import FluidProblem

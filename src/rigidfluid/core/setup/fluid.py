@@ -12,7 +12,7 @@ from rigidfluid.core.fluid.conditions import BoundaryCondition, Value
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.fluid.material import Material
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
-from rigidfluid.core.mesh.size_interface import SizeField
+from rigidfluid.core.mesh.size.size_interface import SizeField
 from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.fluid_backend import FluidBackend

@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import Field
 
-from rigidfluid.core.contact.detector_choice import choose_detector
+from rigidfluid.core.contact.path.detector_choice import choose_detector
 from rigidfluid.core.fluid.conditions import BoundaryCondition, NoSlip
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.wall import Wall

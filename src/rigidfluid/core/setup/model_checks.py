@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rigidfluid.core.contact.detection import detection_by
+from rigidfluid.core.contact.path.detection import detection_by
 from rigidfluid.core.nested.placing import check_orientation
 from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.spelling import suggestion

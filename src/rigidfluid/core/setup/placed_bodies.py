@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from rigidfluid.core.contact.detector_choice import exact_detector
+from rigidfluid.core.contact.path.detector_choice import exact_detector
 from rigidfluid.core.geometry.piece import all_names
 from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.detector import Detector

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.contact.broad_phase import near_pairs
+from rigidfluid.core.contact.pairs.broad_phase import near_pairs
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rigidfluid.core.contact.detection import detection_by
+from rigidfluid.core.contact.path.detection import detection_by
 from rigidfluid.core.fluid.conditions import BoundaryCondition, PrescribedPressure
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.model.window import CLEARANCE, Window

@@ -9,9 +9,9 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from rigidfluid.core.case.scene_model import Case, model_of
+from rigidfluid.core.mesh.adaptation.remesh import inserted_mesh, remesh
 from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
-from rigidfluid.core.mesh.remesh import inserted_mesh, remesh
-from rigidfluid.core.mesh.size_interface import with_fields_at_rest
+from rigidfluid.core.mesh.size.size_interface import with_fields_at_rest
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.output.disk import replace_text, writing

@@ -6,10 +6,10 @@ import numpy as np
 from scipy import sparse
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
-from rigidfluid.taylor_hood.parts import Parts
 from rigidfluid.taylor_hood.schur.cahouet_chabard import CahouetChabard
 from rigidfluid.taylor_hood.schur.scalar_space import ScalarSpace, scalar_spaces
 from rigidfluid.taylor_hood.schur.two_levels import TwoLevels, mean_of_components
+from rigidfluid.taylor_hood.system.parts import Parts
 
 
 class BlockTriangle:

@@ -6,10 +6,10 @@ import numpy as np
 from scipy import sparse
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
-from rigidfluid.taylor_hood.constraint import Constraint
-from rigidfluid.taylor_hood.factorization import Factors, factorise
-from rigidfluid.taylor_hood.pardiso import Orderings
-from rigidfluid.taylor_hood.parts import Parts
+from rigidfluid.taylor_hood.linear_solver.factorization import Factors, factorise
+from rigidfluid.taylor_hood.linear_solver.pardiso import Orderings
+from rigidfluid.taylor_hood.system.constraint import Constraint
+from rigidfluid.taylor_hood.system.parts import Parts
 
 
 class CahouetChabard:

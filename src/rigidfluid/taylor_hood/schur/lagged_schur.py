@@ -7,10 +7,10 @@ from typing import ClassVar, final
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.ranks import ALONE
-from rigidfluid.taylor_hood.flexible_gmres import flexible_gmres
-from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
-from rigidfluid.taylor_hood.parts import Parts
+from rigidfluid.taylor_hood.linear_solver.flexible_gmres import flexible_gmres
+from rigidfluid.taylor_hood.linear_solver.lagged_solver import LaggedSolver
 from rigidfluid.taylor_hood.schur.block_triangle import BlockTriangle
+from rigidfluid.taylor_hood.system.parts import Parts
 
 
 @final

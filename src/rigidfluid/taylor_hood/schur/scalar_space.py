@@ -9,7 +9,7 @@ from scipy import sparse
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from rigidfluid.core.geometry.arrays import BoolArray, IntArray
-from rigidfluid.taylor_hood.constraint import Constraint
+from rigidfluid.taylor_hood.system.constraint import Constraint
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,8 +10,8 @@ from numba import njit
 from scipy import sparse
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.taylor_hood.factorization import factorise
-from rigidfluid.taylor_hood.few_columns import times
+from rigidfluid.taylor_hood.linear_solver.factorization import factorise
+from rigidfluid.taylor_hood.linear_solver.few_columns import times
 from rigidfluid.taylor_hood.schur.incomplete_lu import IncompleteLU
 from rigidfluid.taylor_hood.schur.scalar_space import ScalarSpace
 

@@ -12,9 +12,9 @@ from rigidfluid.core.fluid.conditions import NoSlip, PrescribedPressure, Prescri
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.fluid.material import Newtonian
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.remesh import initial_mesh
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.testing.fluid.base import FluidContract

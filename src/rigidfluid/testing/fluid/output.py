@@ -7,7 +7,7 @@ from itertools import combinations
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.mesh.mesh_motion import stiffness
+from rigidfluid.core.mesh.adaptation.mesh_motion import stiffness
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.testing.fluid.base import FluidContract
 from rigidfluid.testing.fluid.boxes import box, box_with_balls, samples

@@ -6,7 +6,7 @@ import pytest
 import rigidfluid
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
-from rigidfluid.core.contact.proximity import detect_contacts_and_gaps
+from rigidfluid.core.contact.pairs.proximity import detect_contacts_and_gaps
 from rigidfluid.core.model.contacts import select
 from rigidfluid.errors import SceneError
 

@@ -8,8 +8,8 @@ import pytest
 from scipy.integrate import solve_ivp
 from touching import NORMAL, contact, unstacked
 
-from rigidfluid.core.contact.repulsion import Repulsion, RepulsionOptions
-from rigidfluid.core.contact.work_to_stop import work_to_stop
+from rigidfluid.core.contact.laws.repulsion import Repulsion, RepulsionOptions
+from rigidfluid.core.contact.laws.work_to_stop import work_to_stop
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.types import Loads
 from rigidfluid.errors import ArgumentError, SceneError

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rigidfluid.core.contact import broad_phase
+from rigidfluid.core.contact.pairs import broad_phase
 
 RANDOM = np.random.default_rng(3)
 POSITION, RADII = RANDOM.uniform(size=(40, 3)), RANDOM.uniform(0.02, 0.1, size=40)

@@ -10,8 +10,8 @@ from scenes import dry_tables
 
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
-from rigidfluid.core.contact.contact_load import contact_load, damping_loss
-from rigidfluid.core.contact.look_ahead import look_ahead
+from rigidfluid.core.contact.path.contact_load import contact_load, damping_loss
+from rigidfluid.core.contact.path.look_ahead import look_ahead
 from rigidfluid.core.coupling.schemes import scheme_of
 from rigidfluid.core.mechanics.wrenches import power
 from rigidfluid.core.run.simulation import Simulation

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mesh_tools import ball, box_walls, ellipsoid, upright
 
-from rigidfluid.core.contact.delassus import delassus
+from rigidfluid.core.contact.path.delassus import delassus
 from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.dynamics import DryDynamics

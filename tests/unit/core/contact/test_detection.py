@@ -9,9 +9,9 @@ from scenes import dry_tables
 
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
-from rigidfluid.core.contact.detection import MeshDetection, PoseDetection, detection_by
-from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
-from rigidfluid.core.contact.gap_changes import change_too_fast
+from rigidfluid.core.contact.pairs.extrapolated_contacts import ExtrapolatedContacts
+from rigidfluid.core.contact.pairs.gap_changes import change_too_fast
+from rigidfluid.core.contact.path.detection import MeshDetection, PoseDetection, detection_by
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.core.run.simulation import Simulation

@@ -14,7 +14,7 @@ from falling import SCENES
 
 import rigidfluid
 from rigidfluid.core.case.scene_model import model_of
-from rigidfluid.core.contact.detector_check import MOST_PAIRS, check_detector
+from rigidfluid.core.contact.pairs.detector_check import MOST_PAIRS, check_detector
 from rigidfluid.core.geometry.arrays import BoolArray
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.detector import Detector

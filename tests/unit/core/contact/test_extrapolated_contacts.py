@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mesh_tools import ball, ellipsoid
 
-from rigidfluid.core.contact.extrapolated_contacts import ExtrapolatedContacts
+from rigidfluid.core.contact.pairs.extrapolated_contacts import ExtrapolatedContacts
 from rigidfluid.core.geometry.surface import Plane
 from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.mechanics.rigid import rotate

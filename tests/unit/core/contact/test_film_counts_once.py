@@ -11,11 +11,11 @@ from scipy.integrate import solve_ivp
 from touching import contact, unstacked
 
 import rigidfluid
-from rigidfluid.core.contact.film_loss import FilmLoss
-from rigidfluid.core.contact.hunt_crossley import LEAST, hardening
-from rigidfluid.core.contact.loads import inverse_mass
-from rigidfluid.core.contact.restitution import Restitution
-from rigidfluid.core.contact.stokes_number import FILM_EDGE, stokes_number, stokes_number_taken
+from rigidfluid.core.contact.laws.film_loss import FilmLoss
+from rigidfluid.core.contact.laws.hunt_crossley import LEAST, hardening
+from rigidfluid.core.contact.laws.loads import inverse_mass
+from rigidfluid.core.contact.laws.restitution import Restitution
+from rigidfluid.core.contact.laws.stokes_number import FILM_EDGE, stokes_number, stokes_number_taken
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.types import Film, Loads, Motion
 from rigidfluid.forces.normal import NormalLaw

@@ -9,7 +9,7 @@ from scenes import dry_tables
 import rigidfluid
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
-from rigidfluid.core.contact.proximity import detect
+from rigidfluid.core.contact.pairs.proximity import detect
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, Pose

@@ -9,10 +9,10 @@ from touching import contact
 import rigidfluid
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
-from rigidfluid.core.contact import implicit_contacts
-from rigidfluid.core.contact.contact_newton import discrete_gradient
-from rigidfluid.core.contact.repulsion import RepulsionOptions
-from rigidfluid.core.contact.tracked_pairs import TrackedPairs
+from rigidfluid.core.contact.laws.repulsion import RepulsionOptions
+from rigidfluid.core.contact.pairs.tracked_pairs import TrackedPairs
+from rigidfluid.core.contact.path import implicit_contacts
+from rigidfluid.core.contact.path.contact_newton import discrete_gradient
 from rigidfluid.core.mechanics.wrenches import contact_wrench
 from rigidfluid.core.model.types import Pose, Wrench
 from rigidfluid.errors import SceneError, StepError, StepRejected

@@ -11,9 +11,9 @@ from dry_scenes import ball
 from scenes import dry_tables
 
 from rigidfluid.core.case.load import scene_from_dict
-from rigidfluid.core.contact.implicit_path import _refuse_unseen
-from rigidfluid.core.contact.look_ahead import foreseen
-from rigidfluid.core.contact.substep_path import spring_parts
+from rigidfluid.core.contact.path.implicit_path import _refuse_unseen
+from rigidfluid.core.contact.path.look_ahead import foreseen
+from rigidfluid.core.contact.path.substep_path import spring_parts
 from rigidfluid.core.coupling.schemes import scheme_of
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import StepRejected

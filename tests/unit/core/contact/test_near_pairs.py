@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rigidfluid.core.contact.near_pairs import NearPairs
+from rigidfluid.core.contact.pairs.near_pairs import NearPairs
 
 
 def moving_balls(count):

@@ -13,11 +13,11 @@ from touching import NORMAL, contact, unstacked
 from rigidfluid.api import Simulation
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
-from rigidfluid.core.contact.film_loss import FilmLoss
-from rigidfluid.core.contact.hunt_crossley import LEAST
-from rigidfluid.core.contact.restitution import Restitution
-from rigidfluid.core.contact.stokes_number import stokes_number
-from rigidfluid.core.contact.substep import _greatest
+from rigidfluid.core.contact.laws.film_loss import FilmLoss
+from rigidfluid.core.contact.laws.hunt_crossley import LEAST
+from rigidfluid.core.contact.laws.restitution import Restitution
+from rigidfluid.core.contact.laws.stokes_number import stokes_number
+from rigidfluid.core.contact.path.substep import _greatest
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.types import Film, Motion

@@ -8,7 +8,7 @@ from math import ceil, log2
 import numpy as np
 import pytest
 
-from rigidfluid.core.contact.substep import RESOLUTION, Reach, plan, relative_motion
+from rigidfluid.core.contact.path.substep import RESOLUTION, Reach, plan, relative_motion
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.dynamics import DryDynamics
 from rigidfluid.core.model.force_law import ForceLaw

@@ -5,8 +5,8 @@ import pytest
 
 import rigidfluid
 from rigidfluid.core.case.load import scene_from_dict
-from rigidfluid.core.contact import contact_load
-from rigidfluid.core.contact.substep_path import SubstepPath
+from rigidfluid.core.contact.path import contact_load
+from rigidfluid.core.contact.path.substep_path import SubstepPath
 from rigidfluid.core.mechanics.wrenches import contact_wrench
 from rigidfluid.core.model.types import Wrench
 from rigidfluid.detectors.sphere import SphereDetector

@@ -12,11 +12,11 @@ from scipy.spatial.transform import Rotation
 
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
-from rigidfluid.core.contact.look_ahead import near_contacts
-from rigidfluid.core.contact.proximity import detect_contacts_and_gaps
+from rigidfluid.core.contact.pairs.proximity import detect_contacts_and_gaps
+from rigidfluid.core.contact.path.look_ahead import near_contacts
 from rigidfluid.core.coupling.schemes import scheme_of
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.mesh.no_mesh import NoMesh
+from rigidfluid.core.mesh.adaptation.no_mesh import NoMesh
 from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.reduced_model import Coupling, Evaluation, ReducedModel
 from rigidfluid.core.model.state import MotionState, Past, State, unloaded

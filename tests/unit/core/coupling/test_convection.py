@@ -6,7 +6,7 @@ import fluid_contacts as scenes
 import numpy as np
 import pytest
 
-from rigidfluid.core.contact.body_step import BodyStep
+from rigidfluid.core.contact.path.body_step import BodyStep
 from rigidfluid.core.coupling.schemes import scheme_of
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.fluid_step import StepEnd, step_to

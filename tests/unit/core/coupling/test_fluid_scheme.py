@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from linked_bodies import masses, placed, split
 
-from rigidfluid.core.contact.body_step import undisturbed
+from rigidfluid.core.contact.path.body_step import undisturbed
 from rigidfluid.core.coupling import fluid_scheme
 from rigidfluid.core.coupling.expected_load import expected_load, load_before
 from rigidfluid.core.coupling.fluid_scheme import _velocities

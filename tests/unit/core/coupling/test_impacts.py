@@ -8,7 +8,7 @@ import fluid_contacts as scenes
 import numpy as np
 import pytest
 
-from rigidfluid.core.contact.body_step import BodyStep
+from rigidfluid.core.contact.path.body_step import BodyStep
 from rigidfluid.core.coupling.stirring import FELT, STORED, impact_tick
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.model.energy import Ledger

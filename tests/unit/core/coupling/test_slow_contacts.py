@@ -12,8 +12,8 @@ from fluid_contacts import SCENES
 from linked_bodies import masses, placed, split
 
 from rigidfluid.core.case.load import load_scene
-from rigidfluid.core.contact.contact_load import ContactLoad
-from rigidfluid.core.contact.substep_path import SubstepPath
+from rigidfluid.core.contact.path.contact_load import ContactLoad
+from rigidfluid.core.contact.path.substep_path import SubstepPath
 from rigidfluid.core.coupling import navier_stokes_scheme
 from rigidfluid.core.coupling.navier_stokes_scheme import RESOLVED, NavierStokesScheme
 from rigidfluid.core.mechanics.single_bodies import SingleBodies

@@ -10,8 +10,8 @@ import pytest
 
 from rigidfluid.api import BoundaryCondition, FloatArray, NoSlip, Periodic, PrescribedPressure, PrescribedVelocity, Slip
 from rigidfluid.backends.scikit_fem.backend import ScikitFem
-from rigidfluid.taylor_hood.numbering import Numbering
-from rigidfluid.taylor_hood.surfaces import Surfaces
+from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.elements.surfaces import Surfaces
 from rigidfluid.testing.fluid.boxes import box, nobody, samples
 from rigidfluid.testing.fluid.exact import problem
 from rigidfluid.testing.fluid.flow import Flow

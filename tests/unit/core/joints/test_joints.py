@@ -10,7 +10,7 @@ from rigidfluid.checks import check
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.case.system import build_system
-from rigidfluid.core.contact.proximity import interacting
+from rigidfluid.core.contact.pairs.proximity import interacting
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.geometry_checks import initial_contacts
 from rigidfluid.errors import SceneError, StepError

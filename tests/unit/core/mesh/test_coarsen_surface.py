@@ -7,13 +7,13 @@ import pytest
 from mesh_tools import ball, box, box_walls, ellipsoid, upright
 
 from rigidfluid.core.mechanics.frames import distance_to_body
-from rigidfluid.core.mesh.coarsen_surface import SHORTEST, coarsen_surface
+from rigidfluid.core.mesh.adaptation.remesh import remesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
+from rigidfluid.core.mesh.generation.coarsen_surface import SHORTEST, coarsen_surface
+from rigidfluid.core.mesh.generation.meshing import generate_mesh
+from rigidfluid.core.mesh.generation.refine_surface import refine_surface
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
-from rigidfluid.core.mesh.meshing import generate_mesh
-from rigidfluid.core.mesh.refine_surface import refine_surface
-from rigidfluid.core.mesh.remesh import remesh
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_mesh
 
 LOWER, UPPER = np.zeros(3), np.array([2.0, 2.0, 2.0])

@@ -7,16 +7,16 @@ import pytest
 from mesh_tools import ball, box, box_walls, upright
 from threaded_ranks import on_ranks
 
-from rigidfluid.core.mesh import remesh as module
-from rigidfluid.core.mesh.coarsening import MOST_COARSENED, has_coarsened, is_due, relative_sizes
+from rigidfluid.core.mesh.adaptation import remesh as module
+from rigidfluid.core.mesh.adaptation.coarsening import MOST_COARSENED, has_coarsened, is_due, relative_sizes
+from rigidfluid.core.mesh.adaptation.mesh_adaptation import reference_of
+from rigidfluid.core.mesh.adaptation.mesh_motion import MeshMotion
+from rigidfluid.core.mesh.adaptation.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.distribution import distributed
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.mesh_adaptation import reference_of
-from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_sizes
-from rigidfluid.core.mesh.regions import RefinedBox
-from rigidfluid.core.mesh.remesh import initial_mesh, remesh
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.size.regions import RefinedBox
+from rigidfluid.core.mesh.size.size_field import Sizes
 
 RADIUS, DISK = 0.125, [ball(0.125)]
 LOWER, UPPER = np.zeros(2), np.array([2.0, 8.0])

@@ -13,21 +13,21 @@ from mesh_tools import ball, ellipsoid, upright
 from scipy.spatial import Delaunay
 
 from rigidfluid.backends.scikit_fem import ScikitFem
-from rigidfluid.core.mesh.curved_cells import CurvedCells
-from rigidfluid.core.mesh.curved_edges import SQUEEZED, with_curved_edges
+from rigidfluid.core.mesh.adaptation.mesh_motion import MeshMotion
+from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
 from rigidfluid.core.mesh.distribution import partition, parts_of, whole
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
+from rigidfluid.core.mesh.generation.curved_cells import CurvedCells
+from rigidfluid.core.mesh.generation.curved_edges import SQUEEZED, with_curved_edges
 from rigidfluid.core.mesh.location import locate
-from rigidfluid.core.mesh.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.mesh_quality import cell_quality
-from rigidfluid.core.mesh.remesh import initial_mesh
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.mesh.topology import boundary_facets, orient
 from rigidfluid.core.model.types import CurvedEdges, Mesh, Pose
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.domains.box import Box, BoxOptions
-from rigidfluid.taylor_hood.location import locate_on_curves, quadratic_basis
-from rigidfluid.taylor_hood.numbering import Numbering
+from rigidfluid.taylor_hood.elements.location import locate_on_curves, quadratic_basis
+from rigidfluid.taylor_hood.elements.numbering import Numbering
 
 
 def curved_mesh(body, pose, domain, size=0.2, size_body=0.1):

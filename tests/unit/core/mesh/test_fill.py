@@ -11,15 +11,15 @@ from wedge import wedge
 
 from rigidfluid.core.geometry.facets import Facets, enclosed_volume
 from rigidfluid.core.mechanics.frames import distance_to_body
-from rigidfluid.core.mesh import fill
-from rigidfluid.core.mesh.fill import fill_mesh
+from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.inserter import Inserter
+from rigidfluid.core.mesh.generation import fill
+from rigidfluid.core.mesh.generation.fill import fill_mesh
+from rigidfluid.core.mesh.generation.inserter import Inserter
+from rigidfluid.core.mesh.generation.surface_checks import refuse_unfillable
+from rigidfluid.core.mesh.generation.surface_mesh import surface_mesh
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
-from rigidfluid.core.mesh.remesh import initial_mesh
-from rigidfluid.core.mesh.size_field import Sizes
-from rigidfluid.core.mesh.surface_checks import refuse_unfillable
-from rigidfluid.core.mesh.surface_mesh import surface_mesh
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_mesh
 from rigidfluid.errors import MeshError
 

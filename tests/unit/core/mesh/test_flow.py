@@ -9,8 +9,8 @@ from rigidfluid.api import AtRest, Mesh, Twist
 from rigidfluid.core.mesh.distribution import distributed
 from rigidfluid.core.mesh.flow import FlowOnMesh, flow_on, vertex_gradient
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.meshing import generate_mesh
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.generation.meshing import generate_mesh
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.testing.size_field import Whirl
 
 SLOPES = {2: np.array([[1.0, -2.0], [0.5, -1.0]]), 3: np.array([[1.0, -2.0, 0.3], [0.5, 1.0, 4.0], [-0.2, 3.0, -2.0]])}

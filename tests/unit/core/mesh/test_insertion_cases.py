@@ -8,11 +8,11 @@ from facet_domain import bent_tube
 from insertion_cases import CASES, Outcome, outcome, peanut, peanut_in_a_tube
 
 from rigidfluid.core.geometry.facet_moments import facet_moments
-from rigidfluid.core.mesh.fill import fill_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.inserter import Way
+from rigidfluid.core.mesh.generation.fill import fill_mesh
+from rigidfluid.core.mesh.generation.inserter import Way
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.size.size_field import Sizes
 
 pytestmark = pytest.mark.long
 

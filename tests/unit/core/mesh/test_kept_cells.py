@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from mesh_tools import ball, box, box_walls, upright
 
+from rigidfluid.core.mesh.adaptation.kept_cells import LAYERS, kept_cells
+from rigidfluid.core.mesh.adaptation.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.kept_cells import LAYERS, kept_cells
-from rigidfluid.core.mesh.remesh import initial_mesh, remesh
-from rigidfluid.core.mesh.size_field import Sizes, wanted_size
+from rigidfluid.core.mesh.size.size_field import Sizes, wanted_size
 
 
 def meshed(dimension, height):

@@ -6,14 +6,14 @@ from dish import dish, rim
 from mesh_tools import ball, ellipsoid, nobody, upright
 
 from rigidfluid.core.mechanics.frames import distance_to_body
-from rigidfluid.core.mesh import level_set
+from rigidfluid.core.mesh.adaptation import level_set
+from rigidfluid.core.mesh.adaptation.level_set import level_set_mesh
+from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.inserter import Inserter
-from rigidfluid.core.mesh.level_set import level_set_mesh
+from rigidfluid.core.mesh.generation.inserter import Inserter
+from rigidfluid.core.mesh.generation.surface_mesh import surface_mesh
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
-from rigidfluid.core.mesh.remesh import initial_mesh
-from rigidfluid.core.mesh.size_field import Sizes
-from rigidfluid.core.mesh.surface_mesh import surface_mesh
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_mesh
 from rigidfluid.errors import MeshError
 

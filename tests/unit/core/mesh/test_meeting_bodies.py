@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rigidfluid.api import scene_from_dict
-from rigidfluid.core.contact.proximity import detect_contacts_and_gaps
+from rigidfluid.core.contact.pairs.proximity import detect_contacts_and_gaps
 from rigidfluid.core.run.simulation import Simulation
 
 pytestmark = pytest.mark.long

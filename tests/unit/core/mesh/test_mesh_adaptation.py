@@ -12,10 +12,10 @@ from falling import falling_disk
 
 import rigidfluid
 from rigidfluid.core.coupling.fluid_scheme import FluidScheme
-from rigidfluid.core.mesh import mesh_adaptation
-from rigidfluid.core.mesh.mesh_adaptation import TANGLED, MeshUpdater, Renewal
-from rigidfluid.core.mesh.mesh_motion import MeshMotion
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.adaptation import mesh_adaptation
+from rigidfluid.core.mesh.adaptation.mesh_adaptation import TANGLED, MeshUpdater, Renewal
+from rigidfluid.core.mesh.adaptation.mesh_motion import MeshMotion
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.run import stepper as loop
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import StepError, StepRejected

@@ -7,12 +7,12 @@ from mesh_tools import ball, box, edges_of, ellipsoid, nobody, upright
 from threaded_ranks import on_ranks
 
 from rigidfluid.core.mechanics.frames import to_body_frame
+from rigidfluid.core.mesh.adaptation.mesh_motion import MeshMotion, held_components, stiffness
 from rigidfluid.core.mesh.distribution import distributed
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.mesh_motion import MeshMotion, held_components, stiffness
+from rigidfluid.core.mesh.generation.meshing import generate_mesh
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
-from rigidfluid.core.mesh.meshing import generate_mesh
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.model.types import Pose
 
 LOWER, UPPER = np.zeros(2), np.array([2.0, 3.0])

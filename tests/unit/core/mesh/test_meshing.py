@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from mesh_tools import assert_valid, ball, body_facets, box, edge_lengths, edges_of, ellipsoid, nobody, upright
 
-from rigidfluid.core.mesh import meshing
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
+from rigidfluid.core.mesh.generation import meshing
+from rigidfluid.core.mesh.generation.meshing import generate_mesh
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
-from rigidfluid.core.mesh.meshing import generate_mesh
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_mesh
 from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.errors import MeshError

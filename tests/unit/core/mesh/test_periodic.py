@@ -17,13 +17,13 @@ from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.case.system import build_system
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.mesh.adaptation.mesh_motion import MeshMotion
+from rigidfluid.core.mesh.adaptation.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.inserter import Inserter
-from rigidfluid.core.mesh.mesh_motion import MeshMotion
-from rigidfluid.core.mesh.periodic import with_exact_images
-from rigidfluid.core.mesh.refine_surface import LONGEST, long_edges
-from rigidfluid.core.mesh.remesh import initial_mesh, remesh
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.generation.inserter import Inserter
+from rigidfluid.core.mesh.generation.periodic import with_exact_images
+from rigidfluid.core.mesh.generation.refine_surface import LONGEST, long_edges
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.run.run import run
 from rigidfluid.core.scene.scene import Scene

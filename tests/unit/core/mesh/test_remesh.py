@@ -17,16 +17,16 @@ from mesh_tools import (
     upright,
 )
 
-from rigidfluid.core.mesh import refine_surface as surface
-from rigidfluid.core.mesh import remesh as module
+from rigidfluid.core.mesh.adaptation import remesh as module
+from rigidfluid.core.mesh.adaptation.kept_cells import LAYERS
+from rigidfluid.core.mesh.adaptation.mesh_motion import MeshMotion
+from rigidfluid.core.mesh.adaptation.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.kept_cells import LAYERS
-from rigidfluid.core.mesh.mesh_motion import MeshMotion
+from rigidfluid.core.mesh.generation import refine_surface as surface
+from rigidfluid.core.mesh.generation.meshing import generate_mesh
+from rigidfluid.core.mesh.generation.refine_surface import long_edges, refine_surface
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
-from rigidfluid.core.mesh.meshing import generate_mesh
-from rigidfluid.core.mesh.refine_surface import long_edges, refine_surface
-from rigidfluid.core.mesh.remesh import initial_mesh, remesh
-from rigidfluid.core.mesh.size_field import Sizes, wanted_size
+from rigidfluid.core.mesh.size.size_field import Sizes, wanted_size
 from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.errors import MeshError
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.mesh.same_points import rows_of
+from rigidfluid.core.mesh.generation.same_points import rows_of
 
 WITHIN = 1e-9
 

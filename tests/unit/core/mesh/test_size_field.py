@@ -6,7 +6,7 @@ from mesh_tools import ball, box, box_walls, ellipsoid, upright
 
 from rigidfluid.core.mechanics.frames import distance_to_body
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.size_field import Sizes, wanted_size
+from rigidfluid.core.mesh.size.size_field import Sizes, wanted_size
 
 
 @pytest.mark.parametrize("cells", [1.0, 2.0, 7.0])

@@ -17,8 +17,8 @@ from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.case.schema import json_schema
 from rigidfluid.core.case.system import build_system
 from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
-from rigidfluid.core.mesh.size_field import Sizes, wanted_size
-from rigidfluid.core.mesh.size_interface import with_fields_at_rest
+from rigidfluid.core.mesh.size.size_field import Sizes, wanted_size
+from rigidfluid.core.mesh.size.size_interface import with_fields_at_rest
 from rigidfluid.errors import PluginError, SceneError
 
 Install = Callable[..., Path]

@@ -15,14 +15,14 @@ from mesh_tools import ball, nobody, upright
 
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.geometry.surface import Plane
+from rigidfluid.core.mesh.adaptation.mesh_motion import MeshMotion
+from rigidfluid.core.mesh.adaptation.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.inserter import Inserter, Way
-from rigidfluid.core.mesh.mesh_motion import MeshMotion
+from rigidfluid.core.mesh.generation.inserter import Inserter, Way
+from rigidfluid.core.mesh.generation.meshing import generate_mesh
+from rigidfluid.core.mesh.generation.on_surfaces import put_on_surfaces
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
-from rigidfluid.core.mesh.meshing import generate_mesh
-from rigidfluid.core.mesh.on_surfaces import put_on_surfaces
-from rigidfluid.core.mesh.remesh import initial_mesh, remesh
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_volume
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.types import Mesh

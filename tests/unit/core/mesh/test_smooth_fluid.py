@@ -9,9 +9,9 @@ import numpy as np
 from scipy.spatial import Delaunay
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.mesh.curved_cells import CurvedCells
+from rigidfluid.core.mesh.generation.curved_cells import CurvedCells
+from rigidfluid.core.mesh.generation.smooth_fluid import GOOD_QUALITY, smooth_fluid
 from rigidfluid.core.mesh.mesh_quality import cell_quality
-from rigidfluid.core.mesh.smooth_fluid import GOOD_QUALITY, smooth_fluid
 from rigidfluid.core.mesh.topology import boundary_facets, orient, share_no_cell
 from rigidfluid.core.model.types import CurvedEdges, Mesh
 

@@ -14,8 +14,8 @@ from scipy import sparse
 from rigidfluid.core.model import memory
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import StepError, StepRejected
-from rigidfluid.taylor_hood import pardiso
-from rigidfluid.taylor_hood.factorization import factorise
+from rigidfluid.taylor_hood.linear_solver import pardiso
+from rigidfluid.taylor_hood.linear_solver.factorization import factorise
 
 SHORT = {"time": {"step": 0.004, "end": 0.016}, "mesh": {"size": 0.5, "size_body": 0.1}, "output": {"every": 1.0}}
 MATRIX = sparse.csr_array(sparse.random_array((400, 400), density=0.02, rng=0) + 10.0 * sparse.eye_array(400))

@@ -15,7 +15,7 @@ from rigidfluid.checks import Finding, check
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.schema import json_schema
 from rigidfluid.core.case.system import build_system
-from rigidfluid.core.contact.stiffness import greatest_stiffness
+from rigidfluid.core.contact.laws.stiffness import greatest_stiffness
 from rigidfluid.core.model.interactions import Interaction, SumOfLaws
 from rigidfluid.core.model.types import Contacts
 from rigidfluid.core.scene.overrides import override

@@ -14,11 +14,11 @@ from threaded_ranks import on_ranks
 import rigidfluid
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
+from rigidfluid.core.mesh.adaptation.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.distribution import distributed
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.mesh_motion import MeshMotion
-from rigidfluid.core.mesh.meshing import generate_mesh
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.generation.meshing import generate_mesh
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.core.model.window import Window
 from rigidfluid.core.output.history import History

@@ -12,7 +12,7 @@ from dry_scenes import ball, dry_scene
 from falling import falling_disk
 
 import rigidfluid
-from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
+from rigidfluid.core.mesh.adaptation.mesh_adaptation import MeshUpdater
 from rigidfluid.core.output.checkpoint import read_checkpoint
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.tables import Table, read_rows
@@ -175,7 +175,7 @@ def test_a_failed_remesh_leaves_the_mesh_that_still_serves_and_is_counted(monkey
         tried.append(given)
         raise MeshError("mesh", "nothing", "a mesh", "None.")
 
-    monkeypatch.setattr("rigidfluid.core.mesh.mesh_adaptation.remesh", fail)
+    monkeypatch.setattr("rigidfluid.core.mesh.adaptation.mesh_adaptation.remesh", fail)
     monkeypatch.setattr(MeshUpdater, "is_worn", lambda *_: True)
     shown = []
     scene = falling_disk(**SHORT, body={"velocity": [0.0, -1.0]})
@@ -191,7 +191,7 @@ def test_why_a_remesh_failed_is_still_known_after_a_resumption(monkeypatch, tmp_
     def fail(*_):
         raise MeshError("mesh", "nothing", "a mesh", "None.")
 
-    monkeypatch.setattr("rigidfluid.core.mesh.mesh_adaptation.remesh", fail)
+    monkeypatch.setattr("rigidfluid.core.mesh.adaptation.mesh_adaptation.remesh", fail)
     monkeypatch.setattr(MeshUpdater, "is_worn", lambda *_: True)
     told = rigidfluid.run(falling_disk(**SHORT), tmp_path).summary["latest_failed_remesh"]
     monkeypatch.setattr(MeshUpdater, "is_worn", lambda *_: False)

@@ -16,7 +16,7 @@ from rigidfluid.core.output.energy_account import energy_account
 from rigidfluid.core.output.history import History
 from rigidfluid.errors import PluginError
 from rigidfluid.forces.normal import NormalLaw
-from rigidfluid.taylor_hood import advance
+from rigidfluid.taylor_hood.stepping import advance
 
 PERIODIC = [{"on": "left", "type": "periodic"}, {"on": "right", "type": "periodic"}]
 

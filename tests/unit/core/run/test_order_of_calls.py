@@ -10,7 +10,7 @@ from falling import falling_disk
 from paths import ROOT
 
 from rigidfluid.core.coupling.fluid_scheme import FluidScheme
-from rigidfluid.core.mesh.mesh_adaptation import MeshUpdater
+from rigidfluid.core.mesh.adaptation.mesh_adaptation import MeshUpdater
 from rigidfluid.core.run import step
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.run.stepper import Stepper

@@ -15,7 +15,7 @@ from gathered_backend import Gathered, install_gathered
 from threaded_ranks import on_ranks
 
 import rigidfluid
-from rigidfluid.core.mesh import mesh_adaptation
+from rigidfluid.core.mesh.adaptation import mesh_adaptation
 from rigidfluid.core.model.ranks import ALONE
 from rigidfluid.core.output import vtu
 from rigidfluid.core.output.checkpoint import read_checkpoint, stage_checkpoint

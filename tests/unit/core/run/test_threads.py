@@ -21,7 +21,7 @@ def seen(*given, **named):
 
 scene = load_scene({scene!r}, ["mesh.size=0.5", "mesh.size_body=0.1", "time.end=0.005"])
 simulation = Simulation(scene)  # loads the libraries
-import rigidfluid.taylor_hood.flexible_gmres as solver
+import rigidfluid.taylor_hood.linear_solver.flexible_gmres as solver
 solve, solver.gcrotmk = solver.gcrotmk, seen
 simulation.go()
 told("after")

@@ -15,10 +15,10 @@ from other_units import Table, Units, in_units
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.inserter import Inserter
-from rigidfluid.core.mesh.remesh import initial_mesh
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.generation.inserter import Inserter
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.model.reduced_model import Evaluation, reduced_model
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.run.run import run

@@ -15,10 +15,10 @@ from typer.testing import CliRunner
 
 from rigidfluid.cli import app
 from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
-from rigidfluid.core.mesh.remesh import initial_mesh
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.output.mesh_files import write_mesh_vtu, write_msh
 from rigidfluid.errors import MeshError, SceneError

@@ -11,8 +11,8 @@ from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import SceneError
 from rigidfluid.taylor_hood import sparse_backend
-from rigidfluid.taylor_hood.few_columns import times
-from rigidfluid.taylor_hood.lagged_solver import LaggedSolver
+from rigidfluid.taylor_hood.linear_solver.few_columns import times
+from rigidfluid.taylor_hood.linear_solver.lagged_solver import LaggedSolver
 from rigidfluid.taylor_hood.schur.incomplete_lu import IncompleteLU
 from rigidfluid.taylor_hood.schur.lagged_schur import LaggedSchur
 

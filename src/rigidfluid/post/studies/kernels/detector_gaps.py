@@ -13,11 +13,11 @@ from pydantic import Field, model_validator
 
 from rigidfluid.bodies.ellipsoid import Ellipsoid, EllipsoidOptions
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
-from rigidfluid.core.contact.detection import detection_by
+from rigidfluid.core.contact.path.detection import detection_by
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.meshing import generate_mesh
-from rigidfluid.core.mesh.size_field import Sizes
+from rigidfluid.core.mesh.generation.meshing import generate_mesh
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.part import PartOptions

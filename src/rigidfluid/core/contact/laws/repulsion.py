@@ -1,0 +1,106 @@
+"""Common part of the laws with a stiffness parameter: a law gives its formulas for ε = 1, and this divides by ε."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import replace
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field, ValidationError, ValidatorFunctionWrapHandler, WrapValidator
+
+from rigidfluid.core.contact.laws.loads import require_loads
+from rigidfluid.core.contact.laws.work_to_stop import work_to_stop
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.part import PartOptions
+from rigidfluid.core.model.types import Contacts, Loads
+
+AUTO: Literal["auto"] = "auto"
+"""Value of ε in a scene that leaves it to the loads."""
+
+
+def _one_complaint(value: object, validate: ValidatorFunctionWrapHandler) -> object:
+    """Validate a value with one error message in place of one for each of its kinds."""
+    try:
+        return validate(value)
+    except ValidationError:
+        raise ValueError('a valid number greater than 0, or "auto"') from None
+
+
+Epsilon = Annotated[Annotated[float, Field(gt=0)] | Literal["auto"], WrapValidator(_one_complaint)]
+
+
+class RepulsionOptions(PartOptions):
+    """Keys of a table that the laws with a stiffness parameter share.
+
+    ``epsilon``: stiffness parameter ε; the smaller, the stiffer. ``epsilon_wall``: the same at walls.
+    """
+
+    epsilon: Epsilon = Field(
+        description="Stiffness parameter ε; smaller is stiffer; `auto`: from the loads [length^p/force]"
+    )
+    epsilon_wall: Epsilon | None = Field(default=None, description="ε at walls; epsilon if not given [length^p/force]")
+
+
+class Repulsion(ForceLaw):
+    """Law F = F₁/ε n, U = U₁/ε, k = k₁/ε with the formulas of a law for ε = 1.
+
+    ``auto`` sets ε = U₁(smallest_gap) / [E + W (range - smallest_gap)] for each contact, so that a head-on impact of
+    the expected energy E, less the share of the film, on which the weight W still acts, ends at the smallest gap; it
+    needs ``loads``, and raises SceneError if ε cannot be computed from them.
+    """
+
+    Options: ClassVar[type[PartOptions]] = RepulsionOptions
+    options: RepulsionOptions
+
+    def __init__(self, options: PartOptions, range: float, loads: Loads | None = None) -> None:
+        super().__init__(options, range, loads)
+        if AUTO in (self.options.epsilon, self.options.epsilon_wall):
+            self.loads = require_loads(loads, range)
+
+    @abstractmethod
+    def unit_force(self, contacts: Contacts) -> FloatArray:
+        """Force F₁ along the normal, (m,) [force · ε]."""
+
+    @abstractmethod
+    def unit_energy(self, contacts: Contacts) -> FloatArray:
+        """Energy U₁, (m,) [energy · ε]."""
+
+    @abstractmethod
+    def unit_stiffness(self, contacts: Contacts) -> FloatArray:
+        """Stiffness k₁ = -dF₁/dgap, (m,) [force/length · ε]."""
+
+    def force(self, contacts: Contacts) -> FloatArray:
+        """Force F₁/ε along the normal on ``body_a``, (m, d) [force]."""
+        return (self.unit_force(contacts) / self.epsilon(contacts))[:, None] * contacts.normal
+
+    def energy(self, contacts: Contacts) -> FloatArray:
+        """Energy U₁/ε, (m,) [energy]."""
+        return self.unit_energy(contacts) / self.epsilon(contacts)
+
+    def stiffness(self, contacts: Contacts) -> FloatArray:
+        """Stiffness k₁/ε, (m,) [force/length]."""
+        return self.unit_stiffness(contacts) / self.epsilon(contacts)
+
+    def epsilon(self, contacts: Contacts) -> FloatArray:
+        """Stiffness parameter ε of each contact, (m,) [length^p/force]; infinite with ``auto`` between two bodies of
+        prescribed twist."""
+        between, at_walls = self.options.epsilon, self.options.epsilon_wall
+        if at_walls is None:
+            return self._epsilon(between, contacts)
+        return np.where(contacts.at_wall, self._epsilon(at_walls, contacts), self._epsilon(between, contacts))
+
+    def closeness(self, contacts: Contacts) -> FloatArray:
+        """Depth of each contact in the range w = max(range - gap, 0), (m,) [length]."""
+        return np.maximum(self.range - contacts.gap, 0.0)
+
+    def _epsilon(self, wanted: float | Literal["auto"], contacts: Contacts) -> FloatArray:
+        if wanted != AUTO:
+            return np.full(len(contacts), wanted)
+        loads = require_loads(self.loads, self.range)
+        held = work_to_stop(contacts, loads, self.range)
+        stored = self.unit_energy(replace(contacts, gap=np.full(len(contacts), loads.smallest_gap)))
+        epsilon = np.full(len(contacts), np.inf)
+        np.divide(stored, held, out=epsilon, where=held > 0.0)
+        return epsilon

@@ -1,0 +1,79 @@
+"""Verlet's neighbour list: pairs of near balls, searched for only now and then."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from rigidfluid.core.contact.pairs.broad_phase import near_pairs
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+
+SKIN = 0.6
+"""Distance beyond the reach up to which `NearPairs` searches, over the mean radius."""
+
+_LISTS = 2
+_ALL_PAIRS = 32
+
+
+@dataclass(frozen=True, slots=True)
+class PairList:
+    """Pairs a < b within ``reach`` [length] when the balls were at ``position`` (n, d), sorted by (a, b).
+
+    Slice ``second[start[a]:start[a + 1]]`` has the partners of ball a.
+    """
+
+    start: IntArray
+    second: IntArray
+    position: FloatArray
+    reach: float
+
+    def holds(self, position: FloatArray, reach: float) -> bool:
+        """Tell whether no other pair can be within ``reach``: all pairs are in the list, or nothing has moved far."""
+        if np.isinf(self.reach):
+            return True
+        spare = 0.5 * (self.reach - reach)
+        return spare > 0.0 and bool(_all_near(position, self.position, spare))
+
+
+class NearPairs:
+    """Verlet's neighbour list: pairs a little further apart than asked for, kept as long as no other can come near
+    (Verlet 1967, DOI 10.1103/PhysRev.159.98); ``radii`` (n,) [length].
+
+    The list decides how often pairs are searched for, and never which contacts are found.
+    """
+
+    def __init__(self, radii: FloatArray) -> None:
+        self._radii = radii
+        self._skin = SKIN * float(radii.mean()) if len(radii) else 0.0
+        self._lists: list[PairList] = []
+
+    def within(self, position: FloatArray, reach: float) -> PairList:
+        """Pairs with |x_a - x_b| - r_a - r_b ≤ ``reach`` for balls at ``position`` (n, d), and some more."""
+        wide = np.inf if len(self._radii) <= _ALL_PAIRS else reach + self._skin
+        for found in self._lists:
+            # a list that looks much too far would be right, but slow
+            if found.reach <= wide + self._skin and found.holds(position, reach):
+                return found
+        made = self._made(position, wide)
+        self._lists = [made, *self._lists[: _LISTS - 1]]
+        return made
+
+    def _made(self, position: FloatArray, reach: float) -> PairList:
+        first, second = near_pairs(position, self._radii, reach)
+        order = np.argsort(first * len(self._radii) + second)
+        start = np.searchsorted(first[order], np.arange(len(self._radii) + 1))
+        return PairList(start, second[order], position.copy(), reach)
+
+
+@njit(cache=True, nogil=True)
+def _all_near(position, before, distance):  # type: ignore[no-untyped-def]
+    """Tell whether every point is less than a distance from where it was."""
+    for i in range(len(position)):
+        square = 0.0
+        for k in range(position.shape[1]):
+            square += (position[i, k] - before[i, k]) ** 2
+        if not square < distance**2:
+            return False
+    return True

@@ -1,0 +1,98 @@
+"""Contacts of one pose, detected again at others."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rigidfluid.core.contact.pairs.extrapolated_contacts import ExtrapolatedContacts
+from rigidfluid.core.contact.pairs.proximity import detect, interacting, travel
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.model.contacts import joined, select
+from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import Contacts, Pose
+from rigidfluid.errors import StepRejected
+
+SAME_PLACE = 4.0
+"""Largest distance of a contact's points from those carried along, over the way, at which it is the same contact."""
+
+SLIDING = 0.01
+"""Weight of the distance of the farther points, relative to that of the nearer ones."""
+
+
+class TrackedPairs:
+    """Contacts of the same pairs in the same order at any pose, by a detector that needs no mesh; the pairs are those
+    within ``reach`` [length] at ``pose``.
+
+    A contact of a pair that has several is the one found nearest to its points as the bodies carry them along. A
+    contact that is not found there any more goes on at the points carried along, so that its force ends with the step
+    and not within it.
+    """
+
+    def __init__(self, system: System, pose: Pose, reach: float) -> None:
+        self._system, self._pose, self._reach = system, pose, reach
+        self.start = self._detected(pose, reach)
+        self._pairs = self._numbers(self.start)
+
+    def extrapolate(self, pose: Pose) -> Contacts:
+        """Contacts of the pairs when the bodies are at ``pose``; raises StepRejected if another pair is in range."""
+        moved = float(travel(self._system, self._pose, pose).max())
+        found = self._detected(pose, (self._reach + 2.0 * moved) * (1.0 + 1e-9))
+        numbers = self._numbers(found)
+        self._refuse_others(found, np.isin(numbers, self._pairs, invert=True))
+        if _all_different(self._pairs) and _all_different(numbers):
+            return select(found, np.searchsorted(numbers, self._pairs))
+        expected = ExtrapolatedContacts(self.start, self._pose).extrapolate(pose)
+        return self._matched(found, numbers, expected, SAME_PLACE * moved)
+
+    def missed(self, law: ForceLaw, pose: Pose) -> float:
+        """Energy of the contacts at ``pose`` less that of those tracked there: that of contacts that came, or went,
+        untracked."""
+        if _all_different(self._pairs) and not self._system.arms.any():
+            return 0.0  # two balls have one contact, and others are refused
+        return float(law.energy(self._detected(pose, law.range)).sum() - law.energy(self.extrapolate(pose)).sum())
+
+    def _matched(self, found: Contacts, numbers: IntArray, carried: Contacts, far: float) -> Contacts:
+        """Contacts ``found`` at the places of those ``carried`` along, one for each; the carried one where none is as
+        near as ``far``."""
+        from scipy.optimize import linear_sum_assignment
+
+        both, row = joined([found, carried]), np.arange(len(carried)) + len(found)
+        for pair in np.unique(self._pairs):
+            there, here = np.flatnonzero(numbers == pair), np.flatnonzero(self._pairs == pair)
+            away = _apart(carried, here, found, there)
+            mine, theirs = linear_sum_assignment(away)
+            near = away[mine, theirs] <= far
+            row[here[mine[near]]] = there[theirs[near]]
+        return select(both, row)
+
+    def _detected(self, pose: Pose, reach: float) -> Contacts:
+        near = detect(self._system, pose, None, reach)
+        return select(near, interacting(self._system, near))
+
+    def _numbers(self, contacts: Contacts) -> IntArray:
+        """Number of each contact's pair, in the detectors' order."""
+        return contacts.body_a * len(self._system.surfaces) + contacts.body_b
+
+    def _refuse_others(self, found: Contacts, others: np.ndarray) -> None:
+        entered = np.flatnonzero(others & (found.gap < self._system.law_range))
+        if len(entered):
+            names = [self._system.surfaces[body[entered[0]]] for body in (found.body_a, found.body_b)]
+            raise StepRejected(
+                f"body {names[0]}",
+                f"a contact with {names[1]} that was not foreseen at the start of the step",
+                "contacts between surfaces that may meet at four times the fastest speed",
+                "Shorten the step.",
+            )
+
+
+def _all_different(numbers: IntArray) -> bool:
+    return bool(np.all(numbers[1:] != numbers[:-1]))
+
+
+def _apart(first: Contacts, rows: IntArray, second: Contacts, others: IntArray) -> FloatArray:
+    """Distance of the nearer points and a little of that of the others, of each of some contacts to each of others
+    [length]: a corner goes with its body, while the point that faces it slides."""
+    points = (first.point_a, second.point_a), (first.point_b, second.point_b)
+    a, b = (np.linalg.norm(one[rows][:, None] - other[others][None], axis=2) for one, other in points)
+    return np.asarray(np.minimum(a, b) + SLIDING * np.maximum(a, b))

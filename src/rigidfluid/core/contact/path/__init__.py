@@ -1,0 +1,1 @@
+"""Bodies' path through contacts, in substeps or implicit steps."""

@@ -1,0 +1,91 @@
+"""The two ways in which contacts are detected: by the bodies' poses alone, or on the fluid's mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import ClassVar
+
+import numpy as np
+
+from rigidfluid.core.contact.pairs.round_contacts import on_round_shapes
+from rigidfluid.core.model.detection import Detection, FollowedContacts, Sight
+from rigidfluid.core.model.detector import Detector
+from rigidfluid.core.model.dynamics import BodyDynamics
+from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import Contacts, Mesh, Pose
+
+
+class PoseDetection(Detection):
+    """`Detection` by a detector that is asked at any pose on the way: it misses nothing, and needs no mesh."""
+
+    on_mesh: ClassVar[bool] = False
+
+    def __init__(self, system: System) -> None:
+        # whoever only chooses a way of detection, as a check does, loads no compiled kernels
+        from rigidfluid.core.contact.path.look_ahead import foreseen, look_ahead
+
+        self._foreseen, self._look_ahead = partial(foreseen, system), partial(look_ahead, system)
+
+    @staticmethod
+    def mesh_at(pose: Pose, make: Callable[[Pose], Mesh]) -> Mesh:
+        return Mesh.empty(pose.position.shape[1])
+
+    def on_shapes(self, contacts: Contacts, pose: Pose) -> Contacts:
+        return contacts
+
+    def look_ahead(self, near: FollowedContacts, dynamics: BodyDynamics, size: float) -> Sight:
+        return self._look_ahead(dynamics, size)
+
+    def widened(self, sight: Sight, dynamics: BodyDynamics, size: float) -> Sight:
+        now = self._look_ahead(dynamics, size)
+        return now if now.reach > sight.reach else sight
+
+    def followed(
+        self, near: FollowedContacts, law: ForceLaw, dynamics: BodyDynamics, size: float, reach: float
+    ) -> tuple[Contacts, FollowedContacts]:
+        pairs = self._foreseen(law, dynamics, size, reach)
+        return pairs.start, pairs
+
+    def has_missed(self, seen: Contacts, found: Contacts) -> bool:
+        return False
+
+
+class MeshDetection(Detection):
+    """`Detection` on the mesh at the start of a step and at its end; between them contacts move with their bodies."""
+
+    on_mesh: ClassVar[bool] = True
+
+    def __init__(self, system: System) -> None:
+        self._system = system
+
+    @staticmethod
+    def mesh_at(pose: Pose, make: Callable[[Pose], Mesh]) -> Mesh:
+        return make(pose)
+
+    def on_shapes(self, contacts: Contacts, pose: Pose) -> Contacts:
+        return on_round_shapes(contacts, self._system.walls, pose)
+
+    def look_ahead(self, near: FollowedContacts, dynamics: BodyDynamics, size: float) -> Sight:
+        return Sight(near.extrapolate, np.inf, size)
+
+    def widened(self, sight: Sight, dynamics: BodyDynamics, size: float) -> Sight:
+        return sight
+
+    def followed(
+        self, near: FollowedContacts, law: ForceLaw, dynamics: BodyDynamics, size: float, reach: float
+    ) -> tuple[Contacts, FollowedContacts]:
+        return near.extrapolate(dynamics.pose), near
+
+    def has_missed(self, seen: Contacts, found: Contacts) -> bool:
+        """Tell whether a contact in range was beyond the detector's reach, or a pair has more than were seen."""
+        count = len(self._system.surfaces)
+        before, after = (each.body_a * count + each.body_b for each in (seen, found))
+        pairs, counts = np.unique(after[found.gap < self._system.law_range], return_counts=True)
+        return bool(np.any(counts > np.count_nonzero(before == pairs[:, None], axis=1)))
+
+
+def detection_by(detector: type[Detector]) -> type[PoseDetection | MeshDetection]:
+    """Way of detection by detectors of this class."""
+    return MeshDetection if detector.needs_mesh else PoseDetection

@@ -1,0 +1,264 @@
+"""Implicit step of the bodies through their contacts, stable at any stiffness, that keeps the energy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any, Generic, NamedTuple, TypeVar
+
+import numpy as np
+
+from rigidfluid.core.contact.path.contact_newton import MOST_DENSE, Problem, contact_forces
+from rigidfluid.core.contact.path.delassus import delassus
+from rigidfluid.core.contact.path.substep import relative_motion, relative_velocity
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.wall import WallVelocities
+from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing
+from rigidfluid.core.model.contacts import middle as centre
+from rigidfluid.core.model.dynamics import BodyDynamics
+from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.kinematics import Kinematics
+from rigidfluid.core.model.types import Contacts, Motion, Pose, Twist, Wrench
+from rigidfluid.errors import StepRejected
+
+MOST_UPDATES = 40
+"""Largest number of updates of normals, points and gaps."""
+
+MOST_FORCE_UPDATES = 20
+"""Update after which dampers, and the scale that makes the work exact, are kept: a damper that switches on at the
+range, or a displacement close to zero, may have no value that fits."""
+
+TOLERANCE = 1e-10
+"""Tolerance of the surfaces' positions at the end against those that the forces give, over the range."""
+
+KEPT = 1e-5
+"""Relative error of the energy above which a step is rejected, as bodies turn too far in it for one force in each
+contact."""
+
+JUST_IN = 0.999
+"""Gap over the range of a contact that is just in range."""
+
+_SCALES = 0.5, 2.0
+_STILL = 1e-6
+_ROUNDING = 1e-14
+
+
+M = TypeVar("M", bound=BodyDynamics)
+
+
+class Encounter(NamedTuple, Generic[M]):
+    """Bodies and contacts at the start of a step.
+
+    ``start`` are the m contacts that may come into range of the ``law`` in the step of this ``size`` Δt [time],
+    ``contacts_at`` gives the same contacts, in the same order, at another pose; ``wall_velocity`` is as in
+    `relative_motion`, None for walls at rest.
+    """
+
+    law: ForceLaw
+    dynamics: M
+    start: Contacts
+    contacts_at: Callable[[Pose], Contacts]
+    size: float
+    wall_velocity: WallVelocities | None
+
+
+class Crossing(NamedTuple, Generic[M]):
+    """Result of a step: the bodies' ``dynamics`` at its end, the contacts' mean ``wrench``, the energy ``lost``, the
+    ``wall_work`` done on the bodies by sliding walls, and the energy ``stored`` in bodies and contacts [energy]."""
+
+    dynamics: M
+    wrench: Wrench
+    lost: float
+    wall_work: float
+    stored: float
+
+
+def implicit_contact_step(encounter: Encounter[M]) -> Crossing[M]:
+    """Advance x₁ = x₀ + Δt (U₀ + U₁)/2, U₁ = U₀ + Δt (A + M⁻¹ Σ f n), with one force f in each contact for the whole
+    step.
+
+    f = -[U(g₁) - U(g₀)]/(n·Δx), the discrete gradient of the law's energy U, does the work that the energy loses; Δx is
+    the way of the surfaces past each other by their mean velocity in both kicks, or in the drift where friction acts in
+    kicks too, n and the points are those in mid-step (Gonzalez, J. Nonlinear Sci. 6 (1996) 449, doi:10.1007/BF02440162;
+    Simo, Tarnow & Wong, Comput. Methods Appl. Mech. Eng. 100 (1992) 63, doi:10.1016/0045-7825(92)90115-Z). Dampers act
+    with the mean velocity, across the surfaces implicitly, along them with that of the iteration before. The step is of
+    second order where it resolves the contact, and keeps the energy at any length.
+
+    The encounter's dynamics is left as it is. StepRejected is raised if bodies would overlap, no forces are found, or
+    bodies turn too far for the forces to keep the energy.
+    """
+    law, start, size, wall_velocity = encounter.law, encounter.start, encounter.size, encounter.wall_velocity
+    iterate = _straight_on(encounter)
+    force, gap, dampers = np.zeros(len(start)), start.gap, _dampers(law, iterate, size)
+    for update in range(MOST_UPDATES):
+        offset, free = iterate.way - iterate.gap, iterate.gap - iterate.compliance @ force
+        problem = Problem(law, start, free, iterate.compliance, iterate.scale, dampers.across, offset)
+        force, gap = contact_forces(problem, force, gap)
+        spring = (force + dampers.across * (gap + offset)) / iterate.scale
+        total = force[:, None] * iterate.middle.normal + dampers.along
+        before = iterate
+        acting = contact_wrench(iterate.middle, total, iterate.pose)
+        iterate = _evaluate(encounter, acting, iterate.place)
+        used = dampers
+        if update < MOST_FORCE_UPDATES:
+            dampers = _dampers(law, iterate, size)
+        else:
+            iterate = iterate._replace(scale=before.scale)
+        wanted = (iterate.scale * spring - dampers.across * iterate.way)[
+            :, None
+        ] * iterate.middle.normal + dampers.along
+        if _converged(law, iterate, gap, wanted - total):
+            wall_work = 0.0
+            if wall_velocity is not None:
+                wall_work = size * float(np.sum(total * wall_velocity(start.body_b, centre(iterate.middle))))
+            stored = _most_stored(encounter, iterate)
+            _refuse_to_create(encounter, iterate, before.scale * spring, stored)
+            return _crossing(iterate, used, size, wall_work, stored)
+        gap = iterate.gap
+    raise _rejected(f"no forces after {MOST_UPDATES} updates of the normals")
+
+
+class _Iterate(NamedTuple, Generic[M]):
+    """Bodies and contacts under some forces.
+
+    ``dynamics`` at the end; ``pose``, ``place`` on the motions, contacts and mean motion in mid-step; ``way`` n·Δx and
+    ``gap`` at the end (m,) [length]; ``scale`` (g₁ - g₀)/(n·Δx) (m,) [1]; ``compliance`` Δt²/2 D (m, m) [length/force];
+    the ``wrench``.
+    """
+
+    dynamics: M
+    pose: Pose
+    place: Kinematics
+    middle: Contacts
+    motion: Motion
+    way: FloatArray
+    gap: FloatArray
+    scale: FloatArray
+    compliance: Any
+    wrench: Wrench
+
+
+class _Dampers(NamedTuple):
+    """Forces of dampers, ``across``: force over way along the normal (m,) [force/length]; ``along``: force in the
+    surfaces (m, d)."""
+
+    across: FloatArray
+    along: FloatArray
+
+
+def _straight_on(encounter: Encounter[M]) -> _Iterate[M]:
+    """First guess, which accepts overlaps: without contact forces, with all surfaces flat."""
+    _, dynamics, start, _, size, wall_velocity = encounter
+    trial, none = dynamics.copied(), nothing(dynamics.pose)
+    trial.kick(none, 0.5 * size)
+    motion = relative_motion(start, trial, wall_velocity)
+    way = size * _normal_part(motion.velocity, start)
+    scale, compliance = np.ones(len(start)), _compliance(start, dynamics, size)
+    place = dynamics.pose, dynamics.kinematics
+    return _Iterate(trial, *place, start, motion, way, start.gap + way, scale, compliance, none)
+
+
+def _evaluate(encounter: Encounter[M], wrench: Wrench, place: Kinematics) -> _Iterate[M]:
+    law, dynamics, start, contacts_at, size, wall_velocity = encounter
+    trial = dynamics.copied()
+    trial.kick(wrench, 0.5 * size, place)
+    kicked = trial.motion_twist
+    trial.drift(0.5 * size)
+    pose, kinematics, middle = trial.pose, trial.kinematics, contacts_at(trial.pose)
+    motion, compliance = relative_motion(middle, trial, wall_velocity), _compliance(middle, trial, size)
+    trial.drift(0.5 * size)
+    drifted = trial.motion_twist
+    trial.kick(wrench, 0.5 * size, place)
+    drift = kicked, drifted
+    twist = _mean(drift if trial.resisted else (dynamics.motion_twist, *drift, trial.motion_twist))
+    velocity = relative_velocity(middle, pose, kinematics.component_twist(twist))
+    if wall_velocity is not None:
+        velocity -= wall_velocity(middle.body_b, centre(middle))
+    motion = replace(motion, velocity=velocity)
+    gap = contacts_at(trial.pose).gap
+    if np.any(gap <= 0.0):
+        raise _rejected("an overlap where they take the bodies")
+    way = size * _normal_part(motion.velocity, middle)
+    moves = np.abs(way) > _STILL * law.range
+    scale = np.divide(gap - start.gap, way, out=np.ones_like(way), where=moves)
+    return _Iterate(trial, pose, kinematics, middle, motion, way, gap, np.clip(scale, *_SCALES), compliance, wrench)
+
+
+def _compliance(contacts: Contacts, dynamics: BodyDynamics, size: float) -> Any:
+    matrix = 0.5 * size**2 * delassus(contacts, dynamics, 0.5 * size)
+    return matrix.toarray() if len(contacts) <= MOST_DENSE else matrix
+
+
+def _dampers(law: ForceLaw, iterate: _Iterate[M], size: float) -> _Dampers:
+    if not law.dissipative:
+        return _Dampers(np.zeros_like(iterate.way), np.zeros_like(iterate.middle.normal))
+    speed, normal = _normal_part(iterate.motion.velocity, iterate.middle), iterate.middle.normal
+    speed = np.where(speed == 0.0, 1.0, speed)
+    straight = law.damping(iterate.middle, replace(iterate.motion, velocity=speed[:, None] * normal))
+    whole = law.damping(iterate.middle, iterate.motion)
+    along = whole - _normal_part(whole, iterate.middle)[:, None] * normal
+    return _Dampers(-_normal_part(straight, iterate.middle) / speed / size, along)
+
+
+def _converged(law: ForceLaw, iterate: _Iterate[M], gap: FloatArray, missing: FloatArray) -> bool:
+    """Tell whether gaps match the prediction and the residual force displaces no body beyond tolerance."""
+    enough = TOLERANCE * law.range + _ROUNDING * np.abs(iterate.pose.position).max()
+    moved = iterate.compliance.diagonal() * np.linalg.norm(missing, axis=1)
+    return bool(np.all(np.abs(iterate.gap - gap) <= enough) and np.all(moved <= enough))
+
+
+def _mean(twists: Sequence[Twist]) -> Twist:
+    return Twist(
+        np.mean([twist.velocity for twist in twists], axis=0),
+        np.mean([twist.angular_velocity for twist in twists], axis=0),
+    )
+
+
+def _most_stored(encounter: Encounter[M], iterate: _Iterate[M]) -> float:
+    """Greatest energy at the start, at the end, or in a contact that is just in range: a smaller scale is not worth
+    another step [energy]."""
+    law, start = encounter.law, encounter.start
+    end = replace(start, gap=iterate.gap)
+    just_in = [replace(start, gap=np.full(len(start), JUST_IN * begin)) for begin in law.ranges]
+    touching = [float(law.energy(contacts).max()) for contacts in just_in]
+    return max(_stored(law, encounter.dynamics, start), _stored(law, iterate.dynamics, end), *touching)
+
+
+def _stored(law: ForceLaw, dynamics: BodyDynamics, contacts: Contacts) -> float:
+    """Kinetic energy of free bodies and potential energy of the contacts [energy]."""
+    twist, energy = dynamics.twist, float(law.energy(contacts).sum())
+    for velocity, inverse in (
+        (twist.velocity, dynamics.inverse_mass),
+        (twist.angular_velocity, dynamics.inverse_inertia),
+    ):
+        free = inverse.any(axis=(1, 2))
+        energy += 0.5 * float(np.einsum("ni,nij,nj->", velocity[free], np.linalg.inv(inverse[free]), velocity[free]))
+    return energy
+
+
+def _refuse_to_create(encounter: Encounter[M], iterate: _Iterate[M], force: FloatArray, stored: float) -> None:
+    """Raise StepRejected if the work of the springs' ``force`` (m,) is not the loss of their energy."""
+    law, start = encounter.law, encounter.start
+    end = replace(start, gap=iterate.gap)
+    created = float(np.sum(force * iterate.way + law.energy(end) - law.energy(start)))
+    if abs(created) > KEPT * stored:
+        raise _rejected(f"energy of {created:.1e} from nowhere, as bodies turn too far")
+
+
+def _crossing(iterate: _Iterate[M], dampers: _Dampers, size: float, wall_work: float, stored: float) -> Crossing[M]:
+    """Result of a converged step; raise StepRejected if dampers that were not updated to the end would give energy."""
+    lost = float(np.sum(dampers.across * iterate.way**2) - size * np.sum(dampers.along * iterate.motion.velocity))
+    if lost < 0.0:
+        raise _rejected("dampers that would give energy")
+    return Crossing(iterate.dynamics, iterate.wrench, lost, wall_work, stored)
+
+
+def _normal_part(vector: FloatArray, contacts: Contacts) -> FloatArray:
+    return np.asarray(np.sum(vector * contacts.normal, axis=1))
+
+
+def _rejected(found: str) -> StepRejected:
+    allowed = "forces that keep all surfaces apart"
+    return StepRejected(
+        "the implicit contact step", found, allowed, "Shorten the step, or set contact.stepping to substeps."
+    )

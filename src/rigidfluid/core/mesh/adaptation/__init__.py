@@ -1,0 +1,1 @@
+"""The mesh over time: moved, re-meshed, and what it is then made from."""

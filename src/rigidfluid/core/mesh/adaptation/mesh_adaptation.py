@@ -1,0 +1,269 @@
+"""Decides when a mesh that only moves must be regenerated, and carries the fluid over.
+
+The root makes each mesh and holds it whole meanwhile; every rank moves its own part.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, replace
+from itertools import chain
+
+import numpy as np
+
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.geometry.value_types import describe
+from rigidfluid.core.mesh.adaptation.coarsening import has_coarsened, is_due, relative_sizes
+from rigidfluid.core.mesh.adaptation.kept_cells import LAYERS
+from rigidfluid.core.mesh.adaptation.mesh_motion import MeshMotion
+from rigidfluid.core.mesh.adaptation.remesh import initial_mesh, remesh
+from rigidfluid.core.mesh.distribution import distributed, whole
+from rigidfluid.core.mesh.flow import flow_on
+from rigidfluid.core.mesh.fluid_domain import FluidDomain, fluid_domain_at
+from rigidfluid.core.mesh.generation.coarsen_surface import coarsen_surface
+from rigidfluid.core.mesh.generation.curved_cells import CurvedCells
+from rigidfluid.core.mesh.generation.curved_edges import with_curved_edges
+from rigidfluid.core.mesh.generation.inserter import BY_SHAPE, Inserter
+from rigidfluid.core.mesh.mesh_quality import cell_quality
+from rigidfluid.core.mesh.size.size_field import Sizes
+from rigidfluid.core.mesh.size.size_interface import SizeField, with_fields, with_fields_at_rest
+from rigidfluid.core.model.replaceable import Replaceable
+from rigidfluid.core.model.state import FailedRemesh, Reference, State
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import Mesh, Pose
+from rigidfluid.core.model.window import CLEARANCE
+from rigidfluid.errors import MeshError, StepError, StepRejected
+
+TANGLED = 0.02
+"""A mesh with a cell below this quality is not solved on."""
+
+NEARLY_TANGLED = 2.0 * TANGLED
+"""A moved mesh is regenerated before a cell tangles, however low a quality is asked for."""
+
+
+@dataclass(frozen=True)
+class Renewal:
+    """Conditions on which a mesh is regenerated.
+
+    Its worst cell has fallen below ``quality``, or is nearly tangled, and below half of what it was when made; or it is
+    ``oldest`` ticks old. For ``pause`` ticks after a mesh could not be made, none is tried unless a cell is nearly
+    tangled.
+    """
+
+    quality: float
+    pause: int
+    oldest: float = np.inf
+
+
+class MeshUpdater:
+    """`Updater` that re-makes the mesh where its quality, its cells' sizes, a gap or its age asks for that.
+
+    Each mesh has the cells that ``fields`` ask for, by the flow on the mesh before; the first one, which ``inserter``
+    makes, by a fluid and bodies at rest. All others are made on the conditions of ``renewal``. ``watch`` times a stage
+    by its name; the carrying over of the fluid is the stage "transfer".
+    """
+
+    needs_remesh = Replaceable()
+
+    def __init__(
+        self,
+        system: System,
+        sizes: Sizes,
+        renewal: Renewal,
+        fields: Sequence[SizeField] = (),
+        inserter: Inserter = BY_SHAPE,
+        watch: Callable[[str], AbstractContextManager[None]] = lambda _: nullcontext(),
+    ) -> None:
+        self._system = system
+        self._sizes = sizes
+        self._renewal = renewal
+        self._fields = tuple(fields)
+        self._inserter = inserter
+        self._watch = watch
+        self.needs_remesh = self.is_worn
+        self._motion: tuple[MeshMotion, CurvedCells]
+        self._reference: Reference | None = None
+        self._latest: tuple[Reference, Pose, FloatArray, float] | None = None
+        self._made: tuple[Reference, FloatArray] | None = None
+
+    def first_mesh(self) -> Mesh:
+        """The mesh around the bodies' initial pose."""
+        s, ranks = self._system, self._system.backend.ranks
+        with ranks.raise_on_all():
+            around = fluid_domain_at(s, s.pose)
+            sizes = with_fields_at_rest(self._sizes, self._fields, around)
+            mesh = Mesh.empty(s.dimension)
+            if ranks.is_root:
+                mesh = self._curved(initial_mesh(around, sizes, self._inserter), around)
+        return distributed(mesh, ranks)
+
+    def first_reference(self, mesh: Mesh, gaps: FloatArray) -> Reference:
+        """The first mesh as a reference."""
+        return reference_of(mesh, self._system.pose, gaps, 0)
+
+    def deform(self, state: State, pose: Pose) -> Mesh:
+        """The mesh when the bodies are at ``pose``; raises StepRejected where a cell is tangled."""
+        _refuse_to_leave(self._system, pose)
+        self._refuse_to_cross(pose)
+        geometry, worst = self._placed(state.reference, pose)
+        if worst < TANGLED:
+            raise StepRejected(
+                "mesh",
+                f"a cell of quality {worst:.3f}",
+                f"at least {TANGLED}",
+                "If bodies are about to touch, strengthen the contact force; else shorten time.step.",
+            )
+        return state.reference.mesh.moved_to(geometry)
+
+    def remesh_if_needed(self, state: State, pose: Pose) -> State:
+        """The same state, on a new mesh if a step to ``pose`` asks for one; with a mark where none can be made."""
+        if state.is_on_new_mesh:
+            return state
+        if self._waits(state.reference, state, pose) or not self._is_asked_for(state, pose):
+            return state
+        try:
+            mesh = self._remade(state, state.mesh)
+        except MeshError as error:
+            # The present mesh serves until a cell tangles, and most often a later pose can be meshed.
+            return replace(state, remesh_failed=FailedRemesh(state.tick, str(error)))
+        with self._watch("transfer"):
+            fluid, loss = self._system.backend.transfer(state.fluid, state.mesh, mesh)
+        return replace(
+            state,
+            mesh=mesh,
+            reference=reference_of(mesh, state.pose, state.gaps, state.tick),
+            fluid=fluid,
+            ledger=state.ledger.after_transfer(loss),
+            remesh_failed=None,
+        )
+
+    def _is_asked_for(self, state: State, pose: Pose) -> bool:
+        """Tell whether the rule of re-meshing, which may be the caller's, says so; raises StepError where it says
+        neither."""
+        answer = self.needs_remesh(state, pose)
+        if not isinstance(answer, bool | np.bool_):
+            remedy = "Let it return one of them."
+            raise StepError("mesh_updater.needs_remesh", describe(answer), "True or False", remedy)
+        return bool(answer)
+
+    def quality(self, state: State) -> float:
+        """Quality of the worst cell of the mesh where it is now, curved cells included [1]."""
+        return self._placed(state.reference, state.pose)[1]
+
+    def _remade(self, state: State, mesh: Mesh) -> Mesh:
+        s, ranks, present = self._system, mesh.ranks, whole(mesh)
+        flow = flow_on(s.backend, state.fluid, mesh, state.twist) if self._fields else None
+        with ranks.raise_on_all():
+            made = Mesh.empty(s.dimension)
+            if present is not None:
+                around = fluid_domain_at(s, state.pose)
+                sizes = self._sizes if flow is None else with_fields(self._sizes, self._fields, around, flow)
+                if around.domain.dimension == 3:  # in 2D what gaps leave behind costs next to nothing
+                    present = coarsen_surface(present, around, sizes)
+                made = self._curved(remesh(present, around, sizes, LAYERS), around)
+        return distributed(made, ranks)
+
+    def _curved(self, mesh: Mesh, fluid_domain: FluidDomain) -> Mesh:
+        """Bend the mesh's edges to the order that is asked for, if the backend takes curved cells."""
+        if self._sizes.order == 1 or not self._system.backend.curved_cells:
+            return mesh
+        return with_curved_edges(mesh, fluid_domain)
+
+    def _waits(self, reference: Reference, state: State, pose: Pose) -> bool:
+        """Tell whether a mesh that could not be made shortly before is not worth another try."""
+        failed = state.remesh_failed
+        if failed is None or state.tick >= failed.tick + self._renewal.pause:
+            return False
+        return state.tick == failed.tick or self._placed(reference, pose)[1] >= NEARLY_TANGLED
+
+    def is_worn(self, state: State, pose: Pose) -> bool:
+        """Tell whether the mesh is old, a gap has changed since it was made, or a step to ``pose`` spoils a cell."""
+        reference, sizes = state.reference, self._sizes
+        if state.tick >= reference.tick + self._renewal.oldest:
+            return True
+        if _gap_changed(reference.gaps, state.gaps, sizes).any():
+            return True
+        points, worst = self._placed(reference, pose)
+        if worst < min(max(self._renewal.quality, NEARLY_TANGLED), 0.5 * reference.quality):
+            return True
+        if not is_due(reference.pose, state.pose, pose, sizes):
+            return False
+        mesh = reference.mesh
+        now = relative_sizes(points, mesh.cells, fluid_domain_at(self._system, pose), sizes)
+        return has_coarsened(self._sizes_when_made(reference, sizes), now, mesh.ranks)
+
+    def _sizes_when_made(self, reference: Reference, sizes: Sizes) -> FloatArray:
+        """Relative sizes of the reference's cells, (M,), kept for the next look."""
+        if self._made is None or self._made[0] is not reference:
+            mesh, around = reference.mesh, fluid_domain_at(self._system, reference.pose)
+            self._made = reference, relative_sizes(mesh.points, mesh.cells, around, sizes)
+        return self._made[1]
+
+    def _placed(self, reference: Reference, pose: Pose) -> tuple[FloatArray, float]:
+        """Geometry (N + K, d) of the mesh when the bodies are at ``pose``, and its worst cell's quality there; those of
+        the latest pose are kept, as a step asks for them several times."""
+        if self._latest is None or self._latest[0] is not reference or self._latest[1] is not pose:
+            motion, curved = self._map(reference)
+            geometry = motion.move(pose)
+            self._latest = reference, pose, geometry, worst_quality(reference.mesh, curved, geometry)
+        return self._latest[2:]
+
+    def _refuse_to_cross(self, pose: Pose) -> None:
+        """Reject a step in which a body comes to a periodic surface: it would have to be in two places of the mesh, and
+        facets there do not get smaller."""
+        s = self._system
+        for number in chain(*s.domain.periodic):
+            piece, margin = s.domain.pieces[number], self._sizes.size_body
+            radius = s.bounding_radii
+            reaches = piece.shape.signed_distance(pose.position) <= radius + margin
+            if reaches.any():
+                body = int(np.argmax(reaches))
+                raise StepRejected(
+                    f"body {s.surfaces[body]!r}",
+                    f"its centre at {pose.position[body].tolist()}, where it reaches the periodic {piece.name!r}",
+                    f"bodies that stay away from it by {margin:g}, the mesh.size_body, and their bounding radius",
+                    "Lengthen the domain, end the run before, or hold the body.",
+                )
+
+    def _map(self, reference: Reference) -> tuple[MeshMotion, CurvedCells]:
+        if self._reference is not reference:
+            s = self._system
+            around = FluidDomain(s.bodies, reference.pose, s.domain, s.walls)
+            motion = MeshMotion(reference.mesh, around, s.backend.extension, s.window)
+            self._motion, self._reference = (motion, CurvedCells(reference.mesh)), reference
+        return self._motion
+
+
+def _refuse_to_leave(system: System, pose: Pose) -> None:
+    """Reject a step in which a body comes near an end of the window."""
+    if system.window is None:
+        return
+    left = system.window.left_by(pose, system.bounding_radii)
+    if left is not None:
+        lower, upper = system.window.interval(pose)
+        raise StepRejected(
+            f"body {system.surfaces[left]!r}",
+            f"its centre at {pose.position[left].tolist()}, where it leaves the window",
+            f"at least {CLEARANCE:g} of its radii from {lower:.6g} and {upper:.6g} along {'xyz'[system.window.axis]}",
+            "Lengthen domain.window.ahead or domain.window.behind, or follow another body.",
+        )
+
+
+def reference_of(mesh: Mesh, pose: Pose, gaps: FloatArray, tick: int) -> Reference:
+    """A new mesh as what later ones are moved from and compared with; ``gaps`` (n,) when it was made [length]."""
+    return Reference(mesh, pose, gaps, worst_quality(mesh, CurvedCells(mesh), mesh.geometry), tick)
+
+
+def worst_quality(mesh: Mesh, curved: CurvedCells, geometry: FloatArray) -> float:
+    """Quality of the worst cell of the whole mesh, also of its ``curved`` cells, at a ``geometry`` (N + K, d) [1]."""
+    worst = cell_quality(geometry, mesh.cells).min()
+    return float(mesh.ranks.min(min(worst, curved.quality(geometry).min(initial=1.0))))
+
+
+def _gap_changed(before: FloatArray, now: FloatArray, sizes: Sizes) -> BoolArray:
+    """Tell whether each gap that the mesh must resolve has halved, or opened to four times, since the mesh was made,
+    (n,)."""
+    finest, coarsest = sizes.cells_per_gap * sizes.smallest, 2.0 * sizes.cells_per_gap * sizes.size_body
+    ratio = np.clip(now, finest, coarsest) / np.clip(before, finest, coarsest)
+    return (ratio < 0.5) | (ratio > 4.0)

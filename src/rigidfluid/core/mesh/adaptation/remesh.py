@@ -1,0 +1,175 @@
+"""A new mesh around bodies that have moved: MMG re-meshes the fluid and keeps facets of bodies and curved walls."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from itertools import combinations, product
+
+import numpy as np
+
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.mesher_unit import mesher_unit, significant
+from rigidfluid.core.mesh.adaptation.kept_cells import kept_cells
+from rigidfluid.core.mesh.adaptation.level_set import level_set_mesh
+from rigidfluid.core.mesh.adaptation.mmg import Kept, run_mmg, with_kept_facets
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
+from rigidfluid.core.mesh.generation.fill import fill_mesh
+from rigidfluid.core.mesh.generation.inserter import BY_SHAPE, Inserter
+from rigidfluid.core.mesh.generation.meshing import generate_mesh, put_back
+from rigidfluid.core.mesh.generation.refine_surface import LONGEST, long_edges, on_kept_surfaces, refine_surface
+from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
+from rigidfluid.core.mesh.size.size_field import Sizes, wanted_size
+from rigidfluid.core.mesh.topology import REMEDY, check_mesh, check_volume, distinct_edges, orient
+from rigidfluid.core.model.types import Mesh
+from rigidfluid.errors import MeshError
+
+GRADATIONS = (1.3, 1.4, 1.2)
+"""Ratio of neighbouring edges that MMG may use: the first one, then the others where its mesh is not good."""
+
+GOOD_QUALITY = 0.3
+"""A re-made mesh is good, and the first one that is good is taken, when all its cells are above this quality."""
+
+BISECTABLE = 4.0
+"""Kept edges at most this many times longer than wanted are left to bisection; longer ones may cut through the gap."""
+
+GENERATIONS = 8
+"""Largest number of times that the first mesh is generated, each time finer where an edge is too long for the gap it
+faces."""
+
+ROUNDS = 4
+"""Largest number of times that cells are improved around edges that could not be bisected."""
+
+WORST_QUALITY = 0.02
+"""A re-made mesh with a cell at or below this quality is refused."""
+
+LONGEST_EDGE = 2.5
+"""A re-made mesh with an edge longer than this many times the wanted size is refused: MMG has done nothing."""
+
+
+def initial_mesh(
+    fluid_domain: FluidDomain,
+    sizes: Sizes,
+    inserter: Inserter = BY_SHAPE,
+) -> Mesh:
+    """First mesh of a scene: made in the ``inserter``'s way, then graded by the wanted size like every later one.
+
+    Markers are surface numbers, as in :func:`~rigidfluid.core.mesh.generation.meshing.generate_mesh`. Raises MeshError
+    where no valid mesh can be made.
+    """
+    inserted = inserted_mesh(fluid_domain, sizes, inserter)
+    return remesh(inserted, fluid_domain, sizes)
+
+
+def inserted_mesh(fluid_domain: FluidDomain, sizes: Sizes, inserter: Inserter) -> Mesh:
+    """The first mesh before it is graded; as for `initial_mesh`."""
+    way = inserter.chosen(fluid_domain.bodies, fluid_domain.domain)
+    if way != "cad":
+        insert = fill_mesh if way == "fill" else level_set_mesh
+        return insert(fluid_domain, sizes, inserter.timeout)
+    finer: list[tuple[FloatArray, float]] = []
+    for _ in range(GENERATIONS):
+        mesh = generate_mesh(fluid_domain, sizes, finer)
+        _, points, wanted = long_edges(mesh, fluid_domain, sizes, BISECTABLE)
+        if not len(points):
+            break
+        finer += zip(points, wanted, strict=True)
+    return mesh
+
+
+def remesh(
+    mesh: Mesh,
+    fluid_domain: FluidDomain,
+    sizes: Sizes,
+    layers: int = 0,
+) -> Mesh:
+    """Re-mesh the fluid to the wanted size h(x); vertices on bodies and curved walls keep their coordinates to the last
+    bit.
+
+    Their facets are kept too, in the same order and before those of flat surfaces, but those too long for the gap they
+    face are bisected first. If that would invert a cell, the cells around the unbisected facets are improved before;
+    facets that still do not fit after ROUNDS of it stay if they are within LONGEST_EDGE. MMG knows the wanted size at
+    the vertices of the mesh that it is given alone, and sometimes leaves a sliver at a flat wall: if its mesh is far
+    too coarse or has a bad cell, it is given that mesh again. So many ``layers`` of cells next to bodies are kept as
+    far as they are good, and the flow there as it is. Raises MeshError where MMG fails, loses a facet or leaves a bad
+    cell with every gradation.
+    """
+    size_at = partial(wanted_size, fluid_domain=fluid_domain, sizes=sizes)
+    check_mesh(mesh, quality=0.0)
+    new = best_remeshed(refine_surface(mesh, fluid_domain, sizes), fluid_domain, size_at, layers)
+    for _ in range(ROUNDS):
+        well_shaped = lowest_quality(new) > WORST_QUALITY and longest_relative_edge(new, size_at) <= LONGEST_EDGE
+        if well_shaped and not len(long_edges(new, fluid_domain, sizes, LONGEST)[0]):
+            break
+        new = best_remeshed(refine_surface(new, fluid_domain, sizes), fluid_domain, size_at, layers)
+    check_mesh(new, quality=WORST_QUALITY)
+    excess = longest_relative_edge(new, size_at)
+    if excess > LONGEST_EDGE:
+        found = f"an edge {excess:.3g} times longer than wanted after re-meshing"
+        raise MeshError("mesh", found, f"at most {LONGEST_EDGE:g} times", REMEDY)
+    return new
+
+
+def best_remeshed(
+    mesh: Mesh, fluid_domain: FluidDomain, size_at: Callable[[FloatArray], FloatArray], layers: int
+) -> Mesh:
+    """Re-mesh by MMG with the first gradation that gives good cells, else take the best of all gradations.
+
+    The ``layers`` of cells are given up if no gradation gives good cells with them kept.
+    """
+    made: list[Mesh] = []
+    failures: list[MeshError] = []
+    for kept, gradation in product(sorted({layers, 0}, reverse=True), GRADATIONS):
+        try:
+            made.append(remeshed_once(mesh, fluid_domain, size_at, kept, gradation))
+        except MeshError as error:
+            failures.append(error)
+        else:
+            if lowest_quality(made[-1]) > GOOD_QUALITY:
+                break
+    if not made:
+        raise failures[0]
+    return max(made, key=lowest_quality)
+
+
+def remeshed_once(
+    mesh: Mesh, fluid_domain: FluidDomain, size_at: Callable[[FloatArray], FloatArray], layers: int, gradation: float
+) -> Mesh:
+    """Re-mesh by one call of MMG, repair round-off and check the result; ``size_at(points)`` is the wanted size
+    (N,)."""
+    bodies, unit = len(fluid_domain.bodies), mesher_unit(np.ptp(mesh.points, axis=0))
+    given = rounded(replace(mesh, points=mesh.points / unit))
+    kept = Kept(on_kept_surfaces(mesh, fluid_domain), kept_cells(mesh, bodies, size_at, layers))
+    placed = unit * given.points
+    made = run_mmg(given, kept, bodies, significant(size_at(placed) / unit), gradation)
+    outer, made = ~on_kept_surfaces(made, fluid_domain), replace(made, points=unit * made.points)
+    restored = with_kept_facets(made, outer, mesh, kept, placed)
+    new = orient(put_back(restored, bodies, fluid_domain.domain, curved=False))
+    check_mesh(new, quality=0.0)
+    check_volume(new, float(cell_volumes(mesh.points, mesh.cells).sum()), "before re-meshing")
+    return new
+
+
+def rounded(mesh: Mesh) -> Mesh:
+    """The mesh with its points rounded to a millionth of the shortest edge.
+
+    MMG amplifies round-off to another mesh: two runs that agree to round-off shall get the same one.
+    """
+    pairs = np.array(list(combinations(range(mesh.cells.shape[1]), 2)))
+    edges = np.diff(mesh.points[mesh.cells[:, pairs]], axis=2)
+    shortest = float(np.linalg.norm(edges, axis=-1).min())
+    unit = 2.0 ** (np.floor(np.log2(shortest)) - 20)
+    return replace(mesh, points=np.round(mesh.points / unit) * unit)
+
+
+def lowest_quality(mesh: Mesh) -> float:
+    """Quality of the worst cell [1]."""
+    return float(cell_quality(mesh.points, mesh.cells).min())
+
+
+def longest_relative_edge(mesh: Mesh, size_at: Callable[[FloatArray], FloatArray]) -> float:
+    """Longest edge over the size wanted at its middle, max |x_b - x_a| / h [1]."""
+    edges = distinct_edges(mesh.cells)
+    start, end = mesh.points[edges[:, 0]], mesh.points[edges[:, 1]]
+    return float(np.max(np.linalg.norm(end - start, axis=1) / size_at(0.5 * (start + end))))

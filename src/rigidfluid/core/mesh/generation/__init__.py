@@ -1,0 +1,1 @@
+"""Meshes from surfaces and a size: fill, refinement and coarsening of surfaces, curved cells."""

@@ -1,0 +1,286 @@
+"""The first mesh: Netgen fills the domain around the bodies with simplices whose facets know their surface."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.mesher_unit import in_unit, mesher_unit
+from rigidfluid.core.mesh.distribution import surface_vertices
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
+from rigidfluid.core.mesh.generation.on_surfaces import put_on_surfaces
+from rigidfluid.core.mesh.generation.periodic import identify, with_exact_images
+from rigidfluid.core.mesh.size.size_field import Sizes
+from rigidfluid.core.mesh.topology import REMEDY, check_mesh, orient
+from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.model.types import Mesh, Pose
+from rigidfluid.errors import MeshError, PluginError
+
+ATTEMPTS = 8
+
+ROUNDING = 1e-9
+"""Relative excess over the longest edge allowed on a body that counts as rounding."""
+
+_TOUCHING = 3e-7
+"""Gap between two surfaces, over the mesher's unit, up to which Open CASCADE may take them for one."""
+
+
+Finer = Sequence[tuple[FloatArray, float]]
+"""Points (d,), and the longest edge wanted there [length]."""
+
+
+@dataclass(frozen=True)
+class EdgeLengths:
+    """Lengths of edges asked of Netgen, in the unit of its shape: at most ``size``, growing by ``growth`` with the
+    distance to where they are small [1], and no longer than at the points of ``finer``.
+
+    There are ``per_radius`` edges to a radius of curvature; None leaves that to Netgen.
+    """
+
+    size: float
+    growth: float
+    finer: Finer = ()
+    per_radius: float | None = None
+
+    @classmethod
+    def from_sizes(cls, sizes: Sizes, finer: Finer, unit: float) -> EdgeLengths:
+        """Lengths away from bodies, over ``unit``."""
+        near = [(in_unit(point, unit), float(in_unit(length, unit))) for point, length in finer]
+        return cls(float(in_unit(sizes.size, unit)), sizes.growth, near)
+
+
+def generate_mesh(fluid_domain: FluidDomain, sizes: Sizes, finer: Finer = ()) -> Mesh:
+    """Mesh of the domain minus the bodies, Ω \\ ∪ B_i, the vertices of each surface's facets on that surface.
+
+    The size of ``sizes`` is the longest edge wanted far from the bodies, size_body the longest allowed on them; edges
+    are no longer than at the points of ``finer``. Gaps and regions are left to re-meshing. Markers are surface numbers:
+    bodies 0 … n-1, then the domain's pieces. Raises MeshError where a body leaves the domain, or Netgen makes no valid
+    mesh.
+    """
+    bodies, domain = len(fluid_domain.bodies), fluid_domain.domain
+    refuse_bodies_outside(fluid_domain.pose, domain)
+    asked = _size_to_ask(fluid_domain, sizes, finer)
+    mesh = put_back(orient(run_netgen(fluid_domain, sizes, asked, finer)), bodies, domain, curved=True)
+    mesh = replace(mesh, points=points_on_bodies(mesh, fluid_domain))
+    mesh = with_exact_images(mesh, bodies, domain)
+    refuse_touching_bodies(mesh, fluid_domain)
+    check_mesh(mesh, quality=0.0)
+    return mesh
+
+
+def _size_to_ask(fluid_domain: FluidDomain, sizes: Sizes, finer: Finer) -> FloatArray:
+    """The edge length on each body (n,) to ask Netgen for, so that its edges are at most size_body long [length].
+
+    Netgen makes some longer than asked. The surfaces show it, at a tenth of a whole mesh's cost.
+    """
+    size_body = sizes.size_body
+    asked = np.full(len(fluid_domain.bodies), size_body)
+    for _ in range(ATTEMPTS):
+        surfaces = run_netgen(fluid_domain, sizes, asked, finer, surfaces_alone=True)
+        excess = longest_edges(surfaces, len(fluid_domain.bodies)) / size_body
+        if np.all(excess <= 1.0 + ROUNDING):
+            return asked
+        asked = np.where(excess > 1.0 + ROUNDING, 0.95 * asked / np.maximum(excess, 1.0), asked)
+    worst = int(np.argmax(excess))
+    found = f"a facet of length {excess[worst] * size_body:.4g}"
+    raise MeshError(f"body.{worst}", found, f"at most size_body = {size_body:g}", REMEDY)
+
+
+def longest_edges(mesh: Mesh, count: int) -> FloatArray:
+    """Longest edge among each body's facets, (count,) [length]."""
+    longest = np.zeros(count)
+    for a, b in combinations(range(mesh.facets.shape[1]), 2):
+        length = np.linalg.norm(mesh.points[mesh.facets[:, a]] - mesh.points[mesh.facets[:, b]], axis=1)
+        on_body = mesh.markers < count
+        np.maximum.at(longest, mesh.markers[on_body], length[on_body])
+    return longest
+
+
+def refuse_bodies_outside(pose: Pose, domain: Domain) -> None:
+    """Raise MeshError for the first body whose centre is not inside the domain."""
+    for i in np.flatnonzero(~domain.contains(pose.position)):
+        lower, upper = (corner.tolist() for corner in domain.extent)
+        allowed = f"inside the {domain.name} that reaches from {lower} to {upper}"
+        remedy = "Move the body or enlarge the domain."
+        raise MeshError(f"body.{i}.position", pose.position[i].tolist(), allowed, remedy)
+
+
+def refuse_touching_bodies(mesh: Mesh, fluid_domain: FluidDomain) -> None:
+    """Raise MeshError for the first body without facets of its own, or with a vertex on another surface."""
+    count, domain = len(fluid_domain.bodies), fluid_domain.domain
+    names = [f"body.{i}" for i in range(count)] + [repr(piece.name) for piece in domain.pieces]
+    least = _TOUCHING * mesher_unit(domain.size)
+    for i in range(count):
+        mine = mesh.facets[mesh.markers == i]
+        others = mesh.markers[np.isin(mesh.facets, mine).any(axis=1) & (mesh.markers != i)]
+        if len(others) or not len(mine):
+            found = f"contact with {names[others[0]]}" if len(others) else "no surface of its own"
+            allowed = f"a gap of more than {least:.2g} to all other surfaces, below which the mesher sees none"
+            raise MeshError(f"body.{i}.position", found, allowed, "Move it.")
+
+
+def run_netgen(
+    fluid_domain: FluidDomain, sizes: Sizes, asked: FloatArray, finer: Finer = (), surfaces_alone: bool = False
+) -> Mesh:
+    """Mesh by Netgen, cells and facets or facets alone; ``asked`` (n,) is the target edge length on each body
+    [length]."""
+    from netgen import occ
+
+    domain = fluid_domain.domain
+    unit = mesher_unit(domain.size)
+    try:
+        shape = fluid_shape(fluid_domain, asked, unit)
+    except (occ.OCCException, RuntimeError) as error:
+        raise _netgen_failed(error) from error
+    netgen = netgen_mesh(shape, domain.dimension, EdgeLengths.from_sizes(sizes, finer, unit), surfaces_alone)
+    made = (surfaces_of if surfaces_alone else from_netgen)(netgen, domain.dimension)
+    return replace(made, points=unit * made.points)
+
+
+def netgen_mesh(shape: Any, dimension: int, lengths: EdgeLengths, surfaces_alone: bool = False) -> Any:
+    """Netgen's mesh of a ``netgen.occ`` shape, or of its boundary alone."""
+    from netgen import meshing, occ
+
+    surfaces = meshing.MeshingStep.MESHEDGES if dimension == 2 else meshing.MeshingStep.MESHSURFACE
+    rules: dict[str, Any] = {"perfstepsend": surfaces} if surfaces_alone else {}
+    if lengths.per_radius is not None:
+        rules["curvaturesafety"] = lengths.per_radius
+    verbosity = meshing.SetMessageImportance(0)
+    try:
+        geometry = occ.OCCGeometry(shape, dim=dimension)
+        parameters = meshing.MeshingParameters(
+            maxh=lengths.size, grading=lengths.growth, parallel_meshing=False, **rules
+        )
+        for point, length in lengths.finer:
+            parameters.RestrictH(*in_space(point), h=float(length))
+        return geometry.GenerateMesh(parameters)
+    except (occ.OCCException, meshing.NgException, RuntimeError) as error:
+        raise _netgen_failed(error) from error
+    finally:
+        meshing.SetMessageImportance(verbosity)
+
+
+def _netgen_failed(error: Exception) -> MeshError:
+    found = f"Netgen failed ({str(error).strip()})"
+    return MeshError("mesh", found, "bodies that neither overlap nor leave the domain", REMEDY)
+
+
+def put_back(mesh: Mesh, bodies: int, domain: Domain, curved: bool) -> Mesh:
+    """The mesh with the vertices on flat, or on all, surfaces of the domain exactly there; on all at once where several
+    meet."""
+    chosen = [k for k, piece in enumerate(domain.pieces) if curved or piece.shape.plane is not None]
+    belongs = np.zeros((len(mesh.points), len(chosen)), dtype=bool)
+    for column, number in enumerate(chosen):
+        belongs[surface_vertices(mesh, bodies + number), column] = True
+    shapes = [domain.pieces[number].shape for number in chosen]
+    return replace(mesh, points=put_on_surfaces(mesh.points, shapes, belongs))
+
+
+def points_on_bodies(mesh: Mesh, fluid_domain: FluidDomain) -> FloatArray:
+    """The mesh's points (N, d) with those of each body's facets exactly on its shape [length]."""
+    points = mesh.points.copy()
+    for i in range(len(fluid_domain.bodies)):
+        vertices = surface_vertices(mesh, i)
+        points[vertices] = fluid_domain.closest_points(i, points[vertices])
+    return points
+
+
+def fluid_shape(fluid_domain: FluidDomain, size_body: FloatArray, unit: float) -> Any:
+    """The domain minus the bodies as a ``netgen.occ`` shape with lengths over ``unit``, whose faces (edges in 2D) are
+    named by surface number."""
+    from netgen import occ
+
+    bodies, pose, domain = fluid_domain.bodies, fluid_domain.pose, fluid_domain.domain
+    shape, placed = numbered_shape(domain, len(bodies), unit), []
+    centre, longest = in_unit(pose.position, unit), in_unit(size_body, unit).tolist()
+    for i, body in enumerate(bodies):
+        placed.append(turned(body.cad_shape(unit), pose.orientation[i]).Move(occ.Vec(*in_space(centre[i]))))
+        for side in sides(placed[i], domain.dimension):
+            side.name, side.maxh = str(i), longest[i]
+    for group in groups_apart(bodies, pose):  # one by one costs the square of their number
+        shape = shape - (placed[group[0]] if len(group) == 1 else occ.Compound([placed[i] for i in group]))
+    identify(sides(shape, domain.dimension), len(bodies), domain, unit)
+    return shape
+
+
+def groups_apart(bodies: Sequence[Body], pose: Pose) -> list[list[int]]:
+    """The numbers of all bodies in groups of such whose bounding balls do not meet: OpenCASCADE takes none that overlap
+    in one compound."""
+    radius = np.array([body.bounding_radius for body in bodies])
+    groups: list[list[int]] = []
+    for i in range(len(bodies)):
+        for group in groups:
+            distance = np.linalg.norm(pose.position[group] - pose.position[i], axis=1)
+            if (distance > radius[group] + radius[i]).all():
+                group.append(i)
+                break
+        else:
+            groups.append([i])
+    return groups
+
+
+def numbered_shape(domain: Domain, first: int, unit: float) -> Any:
+    """The domain's CAD shape with lengths over ``unit``, its sides numbered from ``first`` on, as its pieces are."""
+    shape = domain.cad_shape(unit)
+    for side in sides(shape, domain.dimension):
+        if side.name not in domain.names:
+            found, key = f"a side of the CAD shape named {side.name!r}, by the type {domain.name!r}", "domain.type"
+            raise PluginError(key, found, f"one of {', '.join(domain.names)}", "Name all sides in `cad_shape`.")
+        side.name = str(first + domain.names.index(side.name))
+    return shape
+
+
+def sides(shape: Any, dimension: int) -> Any:
+    """The parts of a shape's boundary: edges in 2D, faces in 3D."""
+    return shape.edges if dimension == 2 else shape.faces
+
+
+def turned(shape: Any, orientation: FloatArray) -> Any:
+    """A shape rotated about the origin by an angle (2D) or a unit quaternion (3D)."""
+    from netgen import occ
+
+    if len(orientation) == 1:
+        axis, angle = np.array([0.0, 0.0, 1.0]), orientation[0]
+    else:
+        axis, angle = orientation[1:], 2.0 * np.arctan2(np.linalg.norm(orientation[1:]), orientation[0])
+    if angle == 0.0:
+        return shape
+    return shape.Rotate(occ.Axis(occ.Pnt(0, 0, 0), occ.Dir(*axis)), float(np.degrees(angle)))
+
+
+def in_space(vector: FloatArray) -> list[float]:
+    """Three components: those of ``vector``, then zeros."""
+    return [*map(float, vector), *[0.0] * (3 - len(vector))]
+
+
+def from_netgen(netgen: Any, dimension: int) -> Mesh:
+    """Netgen's mesh as arrays; only vertices that a cell uses are kept."""
+    surfaces = surfaces_of(netgen, dimension)
+    cells, _ = elements(netgen.Elements2D() if dimension == 2 else netgen.Elements3D(), dimension + 1)
+    used, compact = np.unique(cells, return_inverse=True)
+    number = np.full(used.max() + 1, -1)
+    number[used] = np.arange(len(used))
+    cells = compact.reshape(cells.shape).astype(np.int64)
+    return Mesh(np.ascontiguousarray(surfaces.points[used]), cells, number[surfaces.facets], surfaces.markers)
+
+
+def surfaces_of(netgen: Any, dimension: int) -> Mesh:
+    """All vertices of Netgen's mesh and its facets, without cells."""
+    facets, regions = elements(netgen.Elements1D() if dimension == 2 else netgen.Elements2D(), dimension)
+    # Until its cells are there, Netgen takes a plane mesh for one in space, whose edges are of codimension 2.
+    name = netgen.GetBCName if netgen.dim == dimension else netgen.GetCD2Name
+    markers = np.array([int(name(region)) for region in range(regions.max() + 1)], dtype=np.int64)
+    points = netgen.Coordinates()[:, :dimension]
+    return Mesh(points, np.empty((0, dimension + 1), dtype=np.int64), facets, markers[regions])
+
+
+def elements(container: Any, corners: int) -> tuple[IntArray, IntArray]:
+    """Vertex numbers (M, corners) and region numbers (M,) of Netgen's elements, both from 0."""
+    table = container.NumPy()
+    return table["nodes"][:, :corners].astype(np.int64) - 1, table["index"].astype(np.int64) - 1

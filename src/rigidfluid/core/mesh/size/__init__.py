@@ -1,0 +1,1 @@
+"""Edge lengths wanted over the domain."""

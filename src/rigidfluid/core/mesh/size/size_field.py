@@ -1,0 +1,86 @@
+"""The cell size wanted at a point: fine near bodies and in chosen regions, finer still in a narrow gap, coarse
+elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.mesh.fluid_domain import FluidDomain
+from rigidfluid.core.mesh.size.regions import Region
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """Parameters of the wanted cell size.
+
+    ``size``: edge length far from the bodies, ``size_body``: that on a body [length]; ``growth`` of the size with the
+    distance to a body [1]; ``cells_per_gap``: number of cells across a gap, for which size_body is halved at most
+    ``refinements`` times; ``order`` of the cells at bodies and curved walls: 1 straight, 2 curved; ``regions`` with a
+    size of their own, unless cells are finer there anyway; ``asked``: edge lengths (N,) at points (N, d) by size fields
+    at the moment [length], which count where they are less.
+    """
+
+    size: float
+    size_body: float
+    growth: float = 0.2
+    cells_per_gap: float = 2.0
+    refinements: int = 6
+    order: int = 2
+    regions: tuple[Region, ...] = ()
+    asked: tuple[Callable[[FloatArray], FloatArray], ...] = ()
+
+    @property
+    def smallest(self) -> float:
+        """Smallest size wanted for a gap, size_body / 2^refinements [length]."""
+        return self.size_body / 2.0**self.refinements
+
+
+def wanted_size(points: FloatArray, fluid_domain: FluidDomain, sizes: Sizes) -> FloatArray:
+    """Wanted edge length at points (N, d), h = min(h_open, max(h_min, (d₁ + d₂)/cells_per_gap)), (N,) [length].
+
+    h_open is `size_away_from_gaps`, h_min `Sizes.smallest`, d₁ the distance to the nearest body, d₂ that to the next
+    body or the nearest wall, so that d₁ + d₂ equals the gap on the segment that joins two surfaces and is larger off
+    it. Two walls make no gap.
+    """
+    first, second = fluid_domain.two_nearest_bodies(points, reach_of_bodies(sizes))
+    return size_between(points, first, second, fluid_domain, sizes)
+
+
+def size_between(
+    points: FloatArray, first: FloatArray, second: FloatArray, fluid_domain: FluidDomain, sizes: Sizes
+) -> FloatArray:
+    """`wanted_size` of points at distances ``first`` and ``second`` (N,) from the two nearest bodies, (N,) [length]."""
+    open_size = _size_at(first, points, sizes)
+    near = np.flatnonzero(first < 1.001 * sizes.cells_per_gap * open_size)  # elsewhere no gap is narrow
+    gap = first[near] + np.minimum(second[near], fluid_domain.nearest_wall(points[near]))
+    wanted = open_size.copy()
+    wanted[near] = np.minimum(open_size[near], np.maximum(gap / sizes.cells_per_gap, sizes.smallest))
+    return wanted
+
+
+def size_away_from_gaps(points: FloatArray, fluid_domain: FluidDomain, sizes: Sizes) -> FloatArray:
+    """Wanted edge length without regard to gaps, (N,) [length].
+
+    h = min(size, size_body + growth·d₁, size_r + growth·d_r, h_f) for all regions r at distances d_r and size fields f.
+    """
+    first, _ = fluid_domain.two_nearest_bodies(points, reach_of_bodies(sizes))
+    return _size_at(first, points, sizes)
+
+
+def _size_at(first: FloatArray, points: FloatArray, sizes: Sizes) -> FloatArray:
+    """h of points at distances ``first`` (N,) from the nearest body."""
+    wanted = np.minimum(sizes.size_body + sizes.growth * first, sizes.size)
+    for region in sizes.regions:
+        np.minimum(wanted, region.size + sizes.growth * region.distance(points), out=wanted)
+    for asked in sizes.asked:
+        np.minimum(wanted, asked(points), out=wanted)
+    return wanted
+
+
+def reach_of_bodies(sizes: Sizes) -> float:
+    """The distance beyond which bodies decide no size [length]."""
+    return max((sizes.size - sizes.size_body) / sizes.growth, sizes.cells_per_gap * sizes.size)

@@ -1,0 +1,69 @@
+"""Finds the curved cells that hold given points, and evaluates bases there, for transfers and probes."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy
+
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.mesh.location import INSIDE, move_inside
+from rigidfluid.taylor_hood.elements.numbering import EDGES
+
+_ITERATIONS, _ENOUGH = 30, 1e-14
+_BEYOND = 0.2
+"""So far outside a curved cell, in its coordinates, its map is trusted."""
+_NEIGHBOURS = 32
+
+
+def locate_on_curves(nodes: FloatArray, guess: IntArray, targets: FloatArray) -> tuple[IntArray, FloatArray]:
+    """The curved cell of each target (N,) and its coordinates in the cell's quadratic map (N, d+1), moved inside.
+
+    ``nodes`` (C, b, d) of all curved cells; ``guess`` (N,): the one whose straight cell holds the target. In 3D the
+    faces between two curved cells are curved too, so that a target near one may be the neighbour's.
+    """
+    cell, found = guess.copy(), _invert_maps(nodes[guess], targets)
+    astray = np.flatnonzero(found.min(axis=1) < INSIDE)
+    if len(astray):
+        corners = targets.shape[1] + 1
+        count = min(_NEIGHBOURS, len(nodes))
+        _, near = scipy.spatial.cKDTree(nodes[:, :corners].mean(axis=1)).query(targets[astray], k=count)
+        near = near.reshape(len(astray), count)
+        tried = _invert_maps(nodes[near.ravel()], np.repeat(targets[astray], count, axis=0))
+        tried = tried.reshape(*near.shape, corners)
+        best = np.argmax(tried.min(axis=2), axis=1)
+        rows = np.arange(len(astray))
+        better = tried[rows, best].min(axis=1) > found[astray].min(axis=1)
+        cell[astray[better]], found[astray[better]] = near[rows, best][better], tried[rows, best][better]
+    return cell, move_inside(found)
+
+
+def _invert_maps(nodes: FloatArray, targets: FloatArray) -> FloatArray:
+    """Coordinates (N, d+1) where the quadratic maps of cells with ``nodes`` (N, b, d) reach ``targets`` (N, d), by
+    Newton's method with the straight cells' matrices."""
+    d = targets.shape[1]
+    inverse = np.linalg.inv(np.swapaxes(nodes[:, 1 : d + 1] - nodes[:, :1], 1, 2))
+    coordinates = np.full((len(targets), d + 1), 1.0 / (d + 1))
+    for _ in range(_ITERATIONS):
+        missed = targets - np.einsum("nb,nbd->nd", quadratic_basis(coordinates), nodes)
+        rest = np.einsum("nij,nj->ni", inverse, missed)
+        coordinates = coordinates + np.column_stack([-rest.sum(axis=1), rest])
+        coordinates = np.clip(coordinates, -_BEYOND, 1.0 + _BEYOND)
+        if np.abs(rest).max(initial=0.0) < _ENOUGH:
+            break
+    return coordinates
+
+
+def barycentric(points: FloatArray, simplices: IntArray, targets: FloatArray) -> FloatArray:
+    """Barycentric coordinates (…, d+1) of ``targets`` (…, d) in ``simplices`` (…, d+1)."""
+    corners = points[simplices]
+    edges = np.moveaxis(corners[..., 1:, :] - corners[..., :1, :], -1, -2)
+    rest = np.linalg.solve(edges, (targets - corners[..., 0, :])[..., None])[..., 0]
+    return np.concatenate([1.0 - rest.sum(axis=-1, keepdims=True), rest], axis=-1)
+
+
+def quadratic_basis(coordinates: FloatArray) -> FloatArray:
+    """The P2 basis (N, b) at barycentric ``coordinates`` (N, d+1): vertices, then edges in the order of `EDGES`."""
+    edges = EDGES[coordinates.shape[1] - 1]
+    vertices = coordinates * (2.0 * coordinates - 1.0)
+    middles = [4.0 * coordinates[:, i] * coordinates[:, j] for i, j in edges]
+    return np.column_stack([vertices, *middles])

@@ -1,0 +1,1 @@
+"""Solutions of that system: factors, projection and iterations."""

@@ -1,0 +1,1 @@
+"""Steps in time, initial flow, responses to impulses, and transfer between meshes."""

@@ -1,0 +1,192 @@
+"""One step of fluid and bodies together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.mechanics.kinematics import prescribed_part
+from rigidfluid.core.mechanics.wrenches import flat
+from rigidfluid.core.mesh.mesh_quality import cell_volumes
+from rigidfluid.core.model.types import Advance, FluidState, Mesh, Step, Twist, Wrench
+from rigidfluid.taylor_hood.elements.container import container_velocity
+from rigidfluid.taylor_hood.system.boundary import FaceFlow, pressure_load
+from rigidfluid.taylor_hood.system.coupled import CoupledMatrix, CoupledSystem, Solution, masses_alone
+from rigidfluid.taylor_hood.system.discretisation import Discretisation, dissipation, kinetic_energy, stress_power
+from rigidfluid.taylor_hood.system.grad_div import grad_div_dissipation
+from rigidfluid.taylor_hood.system.links import solve_linked
+
+_TURNING_TOLERANCE = 1e-3
+"""Relative residual of the solve that corrects the advection near bodies which contacts turn around [1]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Equations:
+    """Equations of one ``step`` from ``fluid`` on ``mesh``: their ``matrix`` is that of `step_matrix`."""
+
+    discretisation: Discretisation
+    matrix: CoupledMatrix
+    fluid: FluidState
+    mesh: Mesh
+    step: Step
+
+    def mesh_velocity(self) -> FloatArray:
+        """Velocity of the nodes (nodes, d) at the end of the step, zero to the last bit where nothing moves."""
+        d0, _, d2 = self.step.derivative
+        before = self.mesh.geometry
+        moved, moved_before = self.matrix.points - before, before - self.fluid["points_previous"]
+        return self.discretisation.numbering.node_points(d0 * moved - d2 * moved_before)
+
+
+def advance(equations: Equations, tolerance: float, attempt: FluidState | None) -> Advance:
+    """Constrain, solve and measure one step.
+
+    The solution of an earlier ``attempt`` at the step is the first guess; without one, the extrapolation in time.
+    """
+    discretisation, step = equations.discretisation, equations.step
+    on_faces = pressure_load(discretisation.surfaces, equations.matrix.node_points, step.time)
+    system = _system(equations, on_faces)
+    if attempt is not None:
+        guess = step.kinematics.motion_twist(attempt["twist"])
+        velocity, pressure = attempt["velocity"], attempt["pressure"]
+        system = replace(system, velocity=velocity, pressure=pressure, twist=guess, again=True)
+    solution, link_force = solve_linked(discretisation, system, step.links, tolerance)
+    if solution.jump_load is not None:
+        on_faces = on_faces + solution.jump_load
+    return _measured(equations, solution, on_faces, link_force)
+
+
+def _measured(equations: Equations, solution: Solution, on_faces: FloatArray, link_force: FloatArray) -> Advance:
+    """The step's result: its state, and the forces and energies of its solution."""
+    discretisation, matrix, fluid = equations.discretisation, equations.matrix, equations.fluid
+    problem, surfaces, step = discretisation.problem, discretisation.surfaces, equations.step
+    d, at, velocity = problem.dimension, matrix.node_points, solution.velocity
+    mean = 0.5 * (fluid["velocity"] + velocity)
+    midway = 0.5 * (equations.mesh.geometry + matrix.points)
+    begins = problem.inertia and step.derivative[2] == 0.0
+    on_bodies = -surfaces.resultants(solution.reaction, at, step.pose.position)
+    at_faces = FaceFlow(surfaces, problem.inert_density, at, velocity, equations.mesh_velocity)
+    return Advance(
+        fluid=_state(equations, solution),
+        twist=_twist(solution, d),
+        hydrodynamic_wrench=Wrench(on_bodies[:, :d], on_bodies[:, d:]),
+        kinetic_energy=kinetic_energy(discretisation, matrix.points, velocity),
+        dissipation=dissipation(discretisation, matrix.points, velocity),
+        dissipation_midway=dissipation(discretisation, midway, mean),
+        boundary_power=at_faces.power(on_faces, solution.reaction),
+        link_force=link_force,
+        spurious_flux=at_faces.spurious_flux(),
+        grad_div=grad_div_dissipation(discretisation, matrix, velocity),
+        source_power=_source_power(discretisation, matrix, velocity, step.time),
+        stress_power=stress_power(discretisation, matrix.points, velocity, mean) if begins else None,
+    )
+
+
+def _state(equations: Equations, solution: Solution) -> FluidState:
+    """The fluid's state at the end of the step, with what it keeps of the one before."""
+    fluid, step, discretisation = equations.fluid, equations.step, equations.discretisation
+    twist = _twist(solution, discretisation.problem.dimension)
+    return {
+        "velocity": solution.velocity,
+        "velocity_previous": fluid["velocity"],
+        "pressure": centre_pressure(discretisation, equations.matrix.points, solution.pressure),
+        "pressure_previous": fluid["pressure"],
+        "points_previous": equations.mesh.geometry,
+        "twist": flat(step.kinematics.component_twist(twist)),
+        "twist_previous": fluid["twist"],
+        "position": step.pose.position,
+        "position_previous": fluid["position"],
+    }
+
+
+def _twist(solution: Solution, dimension: int) -> Twist:
+    return Twist(solution.twist[:, :dimension], solution.twist[:, dimension:])
+
+
+def _source_power(discretisation: Discretisation, matrix: CoupledMatrix, velocity: FloatArray, time: float) -> float:
+    """∫ f·u of the source f [energy/time]."""
+    source, ranks = discretisation.problem.source, discretisation.surfaces.ranks
+    if source is None:
+        return 0.0
+    load = discretisation.mass_times(matrix.points, source(time, matrix.node_points))
+    return float(ranks.sum(np.sum(velocity * load)))
+
+
+def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, step: Step) -> CoupledMatrix:
+    """The matrix of a step: BDF's inertia, viscosity, and convection by u* - w, u* extrapolated and w differenced.
+
+    Without new points it is that of the present mesh, which moves on as it did.
+    """
+    problem, numbering, density = discretisation.problem, discretisation.numbering, discretisation.problem.inert_density
+    (d0, d1, d2), (e0, e1) = step.derivative, step.extrapolation
+    present, before = mesh.geometry, fluid["points_previous"]
+    points = present if step.points is None else step.points
+    expected = e0 * present + e1 * before if step.points is None else points
+    node_points, flow = numbering.node_points(points), density * extrapolated(fluid, step.extrapolation)
+    frame = np.zeros(problem.dimension)
+    if density > 0.0:
+        frame = container_velocity(discretisation.surfaces, step.time, node_points)
+    mesh_velocity = numbering.node_points(d0 * expected + d1 * present + d2 * before)
+    matrix = CoupledMatrix(
+        points=points,
+        node_points=node_points,
+        inertia=density * d0,
+        viscosity=problem.material.dynamic_viscosity,
+        advection=flow - density * mesh_velocity,
+        flow=flow - density * frame,
+        position=step.kinematics.centres(step.pose),
+        mass_matrix=step.mass_matrix,
+        prescribed=step.prescribed,
+        frame=frame,
+    )
+    if density == 0.0 or d0 == 0.0:
+        return matrix
+    masses = masses_alone(matrix, d0)
+    if not step.turning.any():
+        return replace(matrix, masses=masses)
+    turned = density * discretisation.velocity_response(masses, step.turning, _TURNING_TOLERANCE)
+    return replace(matrix, advection=matrix.advection + turned, flow=matrix.flow + turned, masses=masses)
+
+
+def _system(equations: Equations, on_faces: FloatArray) -> CoupledSystem:
+    discretisation, matrix = equations.discretisation, equations.matrix
+    fluid, step = equations.fluid, equations.step
+    problem, surfaces = discretisation.problem, discretisation.surfaces
+    node_points, prescribed = matrix.node_points, matrix.prescribed
+    _, d1, d2 = step.derivative
+    e0, e1 = step.extrapolation
+    history = d1 * fluid["velocity"] + d2 * fluid["velocity_previous"]
+    density_of_load = -problem.inert_density * history - matrix.inertia * matrix.frame
+    if problem.source is not None:
+        density_of_load += problem.source(step.time, node_points)
+    expected = step.kinematics.motion_twist(e0 * fluid["twist"] + e1 * fluid["twist_previous"])
+    twist, moved = prescribed_part(step)
+    return CoupledSystem(
+        matrix,
+        load=discretisation.mass_times(matrix.points, density_of_load) + on_faces,
+        body_load=step.load,
+        prescribed=surfaces.prescribed_velocity(step.time, node_points, step.pose.position, flat(twist), moved),
+        velocity=extrapolated(fluid, step.extrapolation),
+        pressure=e0 * fluid["pressure"] + e1 * fluid["pressure_previous"],
+        twist=np.where(prescribed[:, None], step.prescribed_twist, expected),
+        pressure_jump=surfaces.pressure_jump(step.time, matrix.points[: discretisation.numbering.vertices]),
+        scale=step.load_scale,
+    )
+
+
+def extrapolated(fluid: FluidState, weights: FloatArray) -> FloatArray:
+    """u* = e₀uⁿ + e₁uⁿ⁻¹ with ``weights`` e (2,)."""
+    e0, e1 = weights
+    return np.asarray(e0 * fluid["velocity"] + e1 * fluid["velocity_previous"])
+
+
+def centre_pressure(discretisation: Discretisation, points: FloatArray, pressure: FloatArray) -> FloatArray:
+    """Pressure (vertices,) with zero mean in an enclosed flow, whose constant is free; unchanged in others."""
+    surfaces, cells = discretisation.surfaces, discretisation.numbering.cells
+    if not surfaces.enclosed:
+        return pressure
+    volume = np.abs(cell_volumes(points, cells))
+    integral, whole = surfaces.ranks.sum(np.array([volume @ pressure[cells].mean(axis=1), volume.sum()]))
+    return np.asarray(pressure - integral / whole)

@@ -1,0 +1,141 @@
+"""States whose velocity comes from elsewhere, from another mesh or an impact; it is projected to zero divergence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import FluidState, Mesh, Pose, Twist
+from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.elements.sampling import Samples
+from rigidfluid.taylor_hood.elements.state import resting_state
+from rigidfluid.taylor_hood.system.discretisation import Discretisation, Projection, kinetic_energy
+
+_TIGHTER, _TIGHTEST = 1e-3, 1e-11
+"""Residual of the projection that a run starts from, over the steps' tolerance, and its least value."""
+
+_LOOSE, _OF_STATE = 1e-3, 2.0
+"""The residual of the potential flow from which the energy's scale is known, and, times steps' tolerance, what it may
+leave in the state, into which as much of it gets as the scale differs from 1."""
+
+_MOST_SCALED = 1.25
+"""Rotational flow is scaled by at most this, or its inverse, to keep its kinetic energy."""
+
+
+@dataclass(frozen=True, eq=False)
+class Flow:
+    """State of a ``fluid`` on a ``mesh`` with this ``numbering``, and its kinetic ``energies``: now, and one step
+    before [energy]."""
+
+    fluid: FluidState
+    mesh: Mesh
+    numbering: Numbering
+    energies: tuple[float, float]
+
+
+def transfer(flow: Flow, target: Discretisation, tolerance: float, new: Mesh) -> FluidState:
+    """Carry a flow over to the mesh ``new``.
+
+    Both time levels are carried as functions on the present mesh; the mesh's own displacement over the last step is
+    one more such function, so that the mesh velocity of the next step stays second order. Interpolated velocities
+    are not divergence-free on the new mesh, which would show as a burst of pressure at the next step: each level is
+    projected, on the mesh where it belongs, and given the kinetic energy that it had. The solution of one level is the
+    guess for the other.
+    """
+    source, fluid, old = flow.numbering, flow.fluid, flow.mesh
+    numbering, inertia = target.numbering, target.problem.inert_density
+    on_nodes = Samples(old, source, numbering.node_points(new.geometry))
+    displacement = on_nodes.quadratic(source.node_points(old.geometry - fluid["points_previous"]))
+    moved = dict(fluid)
+    moved["points_previous"] = new.geometry - numbering.geometry_of(displacement)
+    levels = ("", new.geometry, flow.energies[0]), ("_previous", moved["points_previous"], flow.energies[1])
+    correction = rotational = np.zeros((numbering.nodes, numbering.dimension))
+    for suffix, points, energy in levels:
+        moved["pressure" + suffix] = on_nodes.linear(fluid["pressure" + suffix])[: numbering.vertices]
+        velocity = on_nodes.quadratic(fluid["velocity" + suffix])
+        position, twist = fluid["position" + suffix], fluid["twist" + suffix]
+        every = np.ones(len(twist), dtype=bool)
+        target.surfaces.move_with_bodies(velocity, numbering.node_points(points), position, twist, every)
+        projection = target.projection(points, position)
+        projected = projection.nearest(velocity, tolerance, velocity + correction)
+        correction = projected - velocity
+        scale = 1.0
+        if inertia > 0.0:
+            prescribed = target.surfaces.prescribed_part(projected)
+            wanted = 2.0 * energy / inertia
+            scale, rotational = _rotational_part(projection, projected, prescribed, wanted, tolerance, rotational)
+        moved["velocity" + suffix] = projected + (scale - 1.0) * rotational
+    return moved
+
+
+def initial(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
+    """Fluid that was at rest when its bodies were set in motion, and its kinetic energy.
+
+    An impact on the bodies sends a wave of pressure through the fluid, which is projection: the flow is potential.
+    """
+    state = dict(resting_state(target.surfaces, mesh, pose, twist))
+    if target.surfaces.ranks.greatest(bool(state["velocity"].any())):
+        projected = project(target, tolerance, state["velocity"], mesh.geometry, pose.position)
+        state["velocity"] = state["velocity_previous"] = projected
+    return state, kinetic_energy(target, mesh.geometry, state["velocity"])
+
+
+def struck(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
+    """The same where faces were set in motion as well: of all flows with their values that of least kinetic energy
+    (Kelvin)."""
+    state, surfaces = dict(resting_state(target.surfaces, mesh, pose, twist)), target.surfaces
+    node_points, every = target.numbering.node_points(mesh.geometry), np.ones(len(state["twist"]), dtype=bool)
+    prescribed = surfaces.prescribed_velocity(0.0, node_points, pose.position, state["twist"], every)
+    projection = target.projection(mesh.geometry, pose.position)
+    least = projection.nearest(np.zeros_like(prescribed), _start_tolerance(tolerance), prescribed, prescribed)
+    state["velocity"] = state["velocity_previous"] = least
+    return state, kinetic_energy(target, mesh.geometry, least)
+
+
+def project(
+    target: Discretisation, tolerance: float, velocity: FloatArray, points: FloatArray, position: FloatArray
+) -> FloatArray:
+    """The divergence-free velocity nearest to ``velocity`` in L², unchanged on bodies and prescribed faces, solved
+    better than steps of this ``tolerance``.
+
+    ``target`` takes all bodies as prescribed.
+    """
+    return target.projection(points, position).nearest(velocity, _start_tolerance(tolerance), velocity)
+
+
+def _start_tolerance(tolerance: float) -> float:
+    return max(_TIGHTER * tolerance, _TIGHTEST)
+
+
+def _rotational_part(
+    projection: Projection,
+    velocity: FloatArray,
+    prescribed: FloatArray,
+    square: float,
+    tolerance: float,
+    guess: FloatArray,
+) -> tuple[float, FloatArray]:
+    """Scale of `_scale`, and the difference (nodes, d) of a ``velocity`` from the potential flow with the same
+    ``prescribed`` values, from a ``guess`` onwards; the potential flow has the residual that ``tolerance`` asks for."""
+    potential = projection.nearest(prescribed, _LOOSE, velocity - guess)
+    scale = _scale(projection, velocity, velocity - potential, square)
+    if _LOOSE * abs(scale - 1.0) > _OF_STATE * tolerance:
+        potential = projection.nearest(prescribed, _OF_STATE * tolerance / abs(scale - 1.0), potential)
+        scale = _scale(projection, velocity, velocity - potential, square)
+    return scale, velocity - potential
+
+
+def _scale(projection: Projection, velocity: FloatArray, rotational: FloatArray, square: float) -> float:
+    """s such that ∫ |v + (s - 1) b|² = ``square``, of a ``velocity`` v and its ``rotational`` part b.
+
+    Both are free of divergence and b is zero on the boundary, so that all combinations are right there. Near a gap the
+    new mesh knows another added mass than the squeezed one before, and the projection changes the kinetic energy.
+    """
+    a, b = projection.product(rotational, rotational), projection.product(velocity, rotational)
+    if a == 0.0:
+        return 1.0
+    rest = projection.product(velocity, velocity) - 2.0 * b + a
+    root = np.sqrt(max((b - a) ** 2 - a * (rest - square), 0.0))
+    return float(np.clip((root - (b - a)) / a, 1.0 / _MOST_SCALED, _MOST_SCALED))

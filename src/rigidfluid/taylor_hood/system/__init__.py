@@ -1,0 +1,1 @@
+"""The linear system of fluid and bodies: discretised terms, constraint and links."""

@@ -1,0 +1,86 @@
+"""Contract of a backend of Taylor–Hood elements: the equations on one topology, assembled and solved."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.elements.surfaces import Surfaces
+from rigidfluid.taylor_hood.system.coupled import CoupledMatrix, CoupledSystem, Solution
+
+
+class Projection(Protocol):
+    """Projection onto velocities without divergence on one geometry, with values prescribed on bodies and
+    faces."""
+
+    def nearest(
+        self, velocity: FloatArray, tolerance: float, guess: FloatArray, prescribed: FloatArray | None = None
+    ) -> FloatArray:
+        """Velocity (nodes, d) without divergence nearest to ``velocity`` (nodes, d) in L², from a ``guess`` onwards.
+
+        It equals ``prescribed`` (nodes, d), by default ``velocity`` too, on bodies and prescribed faces. Its relative
+        residual is ``tolerance``; raises StepRejected.
+        """
+
+    def product(self, first: FloatArray, second: FloatArray) -> float:
+        """(first, second) of velocities (nodes, d)."""
+
+
+class Discretisation(Protocol):
+    """P2–P1 on one topology, or on one process' part of it; ``unknowns`` of all."""
+
+    problem: FluidProblem
+    numbering: Numbering
+    surfaces: Surfaces
+
+    @property
+    def unknowns(self) -> int:
+        """Number of unknowns that a step solves for."""
+
+    def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:
+        """(field, v) for every nodal test function over this process' cells, (nodes, d)."""
+
+    def projection(self, points: FloatArray, position: FloatArray) -> Projection:
+        """Projection on the geometry ``points`` with motions at ``position`` (N, d), all of them prescribed."""
+
+    def strain_square(self, points: FloatArray, velocity: FloatArray) -> float:
+        """∫ ½ (∇u + ∇uᵀ):(∇u + ∇uᵀ) over this process' cells."""
+
+    def divergence_square(self, points: FloatArray, velocity: FloatArray, weight: FloatArray) -> float:
+        """∫ w (∇·u)² over this process' cells, ``weight`` w (M,) of each."""
+
+    def solve(self, system: CoupledSystem, tolerance: float) -> Solution:
+        """Solve to a residual of ``tolerance`` times the norm of the right side; raises StepRejected."""
+
+    def twist_response(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
+        """Twists (n, d+k, c) that each of c ``wrenches`` (n, d+k, c) on the bodies gives by itself.
+
+        Residuals are ``tolerance`` times each column's norm; raises StepRejected.
+        """
+
+    def velocity_response(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
+        """The velocity (nodes, d) that a ``wrench`` (n, d+k) on the bodies gives by itself."""
+
+
+def kinetic_energy(discretisation: Discretisation, points: FloatArray, velocity: FloatArray) -> float:
+    """½ ρ ∫ |u|² [energy]; zero in Stokes flow, which has no inertia."""
+    problem, ranks = discretisation.problem, discretisation.surfaces.ranks
+    if not problem.inertia:
+        return 0.0
+    return 0.5 * problem.density * float(ranks.sum(np.sum(velocity * discretisation.mass_times(points, velocity))))
+
+
+def dissipation(discretisation: Discretisation, points: FloatArray, velocity: FloatArray) -> float:
+    """μ ∫ ½ |∇u + ∇uᵀ|² [energy/time]."""
+    rate = discretisation.surfaces.ranks.sum(discretisation.strain_square(points, velocity))
+    return discretisation.problem.material.dynamic_viscosity * float(rate)
+
+
+def stress_power(discretisation: Discretisation, points: FloatArray, velocity: FloatArray, other: FloatArray) -> float:
+    """μ ∫ ½ (∇u + ∇uᵀ):(∇v + ∇vᵀ) [energy/time], of the viscous stress of a ``velocity`` u in an ``other`` v."""
+    mean, half = 0.5 * (velocity + other), 0.5 * (velocity - other)
+    return dissipation(discretisation, points, mean) - dissipation(discretisation, points, half)
