@@ -1,15 +1,15 @@
 """Make the gallery's pictures: run each scene as far as its picture shows it, and draw that.
 
 ``python docs/make_pictures.py NAME…`` makes those of some scenes, without names those of all, which takes hours. Runs
-are kept in out/gallery, or the folder ``--runs``; one that is there is drawn as it is.
+are kept in out/gallery, or the folder ``--runs``; a complete one that is there is drawn as it is.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 
+from page_tools.kept_run import is_complete
 from PIL import Image
 from site_tools.gallery import DOCS, SCENES, picture
 from site_tools.scene_picture import Shown, scene_picture
@@ -59,7 +59,7 @@ PICTURES = {
 def draw(name: str, runs: Path) -> Path:
     """Write a scene's picture to docs/pictures; its run is made where it is not in ``runs`` yet."""
     shown, folder = PICTURES[name], runs / name
-    if not _is_complete(folder):
+    if not is_complete(folder):
         settings = (f"time.end={shown.times[-1]}", *shown.settings)
         rigidfluid.run(rigidfluid.load_scene(SCENES / f"{name}.toml", settings), folder)
     path = picture(name)
@@ -68,11 +68,6 @@ def draw(name: str, runs: Path) -> Path:
         small = image.convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=3)
     small.save(path, optimize=True)
     return path
-
-
-def _is_complete(folder: Path) -> bool:
-    summary = folder / "summary.json"
-    return summary.exists() and json.loads(summary.read_text(encoding="utf-8"))["status"] == "complete"
 
 
 def main() -> None:

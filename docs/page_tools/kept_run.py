@@ -72,6 +72,12 @@ def keep_run(scene: Scene, folder: Path, *, fresh: bool = False, may_stop: bool 
     return Run(scene, folder)
 
 
+def is_complete(folder: Path) -> bool:
+    """Whether a folder holds a run that reached its end."""
+    summary = folder / "summary.json"
+    return summary.exists() and json.loads(summary.read_text(encoding="utf-8"))["status"] == "complete"
+
+
 _SAID = {
     "complete": "kept",
     "stopped": "goes on",
@@ -84,13 +90,10 @@ _SAID = {
 
 def _found(scene: Scene, folder: Path) -> str:
     """What there is in a folder for this scene."""
-    summary = folder / "summary.json"
-    if summary.exists():
-        told = json.loads(summary.read_text(encoding="utf-8"))
-        if told["status"] == "complete":
-            return "complete" if told["scene"] == scene.to_dict() else "another"
+    if is_complete(folder):
+        return "complete" if Run(scene, folder).summary["scene"] == scene.to_dict() else "another"
     if not (folder / CHECKPOINT).exists():
-        return "another" if summary.exists() else "nothing"
+        return "another" if (folder / "summary.json").exists() else "nothing"
     try:
         kept = json.loads(read_checkpoint(folder / CHECKPOINT, ALONE).scene)
     except OutputError:

@@ -80,7 +80,7 @@ def movie(
     """
     look, results = look or Look(), read_results(Path(folder), motion_only=True, model=model)
     path, writer = _writer(Path(out) if out else None, Path(folder), look.rate)
-    shot, frames = shot_of(results, look.follow, look.window, look.plane), _frames(results)[:: look.every]
+    shot, frames = shot_of(results, look.follow, look.window, look.plane), _frames(results, look.every)
     follow = None if look.follow is None else results.number_of(look.follow)
     scale = shared_scale(results, look.show, shot.plane, follow) if results.series else None
     if out is None:
@@ -106,15 +106,15 @@ def movie(
     return path
 
 
-def _frames(results: Results) -> list[_Frame]:
-    """The output times whose fields are there, or that have none."""
+def _frames(results: Results, every: int) -> list[_Frame]:
+    """One of ``every`` output times whose fields are there, or that have none."""
     outputs = [(time, path) for time, path in results.outputs if path is None or path.exists()]
-    found = [_Frame(results.state_at(time), path) for time, path in outputs]
-    if len(found) < 2:
-        raise OutputError(
-            "the run", f"{len(found)} output times", "two or more, for a movie", "Run on, or shorten output.every."
-        )
-    return found
+    shown = [_Frame(results.state_at(time), path) for time, path in outputs[::every]]
+    if len(shown) < 2:
+        found = f"{len(outputs)} output times" + f", of which one in {every} is shown" * (every > 1)
+        remedy = "Run on, or shorten output.every" + ", or show more of the times" * (every > 1) + "."
+        raise OutputError("the run", found, "two or more pictures, for a movie", remedy)
+    return shown
 
 
 def _picture(results: Results, shot: Shot, frame: _Frame, look: Look, scale: Scale | None) -> FloatArray:

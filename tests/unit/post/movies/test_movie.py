@@ -269,6 +269,11 @@ def test_of_many_output_times_every_second_is_shown(dry: Path, tmp_path: Path) -
     np.testing.assert_array_equal(frames(second), frames(every)[::2])
 
 
+def test_one_picture_makes_no_movie(dry: Path, tmp_path: Path) -> None:
+    with pytest.raises(OutputError, match="5 output times, of which one in 5 is shown"):
+        movie(dry, tmp_path / "a.gif", Look(longer=60, every=5))
+
+
 def test_no_label_of_a_first_picture_is_cut_off(wet: Path, tmp_path: Path) -> None:
     shown = frames(movie(wet, tmp_path / "a.gif", Look(show="vorticity", longer=340, window=(0.0, 3.0, 1.0, 5.0))))
     for picture in shown:
