@@ -18,7 +18,7 @@ def check_contact_table(table: ContactTable, interactions: Sequence[InteractionT
         raise SceneError("contact.range", "nothing", "a length above 0 with `law`", "Add the law's reach.")
     if law is None and range_ is not None:
         raise SceneError("contact.range", f"{range_} without a law", "`range` with `law`", "Name the law: `law = …`.")
-    own = dict.fromkeys(("smallest_gap", "restitution", "restitution_stokes"), law)
+    own = dict.fromkeys(("smallest_gap", "restitution", "restitution_stokes", "roughness"), law)
     for key, read in {**own, "impact_speed": law or interactions}.items():
         given = getattr(table, key)
         if not read and given is not None:

@@ -20,6 +20,11 @@ _RESTITUTION_STOKES = Field(
     description="β: an impact, including the film that the mesh resolves, ends with `restitution` · exp(-β/St) of its "
     "speed, where St is its Stokes number; 35 for balls in a liquid [1]",
 )
+_ROUGHNESS = Field(
+    default=None,
+    description="Gap at which the film ends and surfaces touch: an impact is a dry one behind the film down to this "
+    "gap, whether the mesh resolves it or not; at most `smallest_gap` [length]",
+)
 
 
 class ContactTable(OpenTable):
@@ -35,6 +40,7 @@ class ContactTable(OpenTable):
     )
     restitution: float | None = _RESTITUTION
     restitution_stokes: float | None = _RESTITUTION_STOKES
+    roughness: Positive | None = _ROUGHNESS
     impact_speed: float | None = Field(
         default=None,
         ge=0,
@@ -61,6 +67,7 @@ class InteractionTable(OpenTable):
     )
     restitution: float | None = _RESTITUTION
     restitution_stokes: float | None = _RESTITUTION_STOKES
+    roughness: Positive | None = _ROUGHNESS
     between: Literal["all", "walls", "pairs"] = Field(
         default="all", description="Contacts at `walls`, of `pairs` of bodies, or both"
     )

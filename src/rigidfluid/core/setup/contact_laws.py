@@ -10,6 +10,7 @@ from pydantic import Field
 
 from rigidfluid.core.contact.laws.film_loss import FilmLoss
 from rigidfluid.core.contact.laws.restitution import Restitution
+from rigidfluid.core.contact.laws.rough_film import RoughFilm
 from rigidfluid.core.geometry.piece import Piece, all_names
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.interactions import Between, Interaction
@@ -42,6 +43,8 @@ class ContactLaw:
         Speed after over speed before a dry head-on impact; 1 if not given [1].
     restitution_stokes : float, optional
         β, with which an impact ends with ``restitution`` · exp(-β/St) of its speed, St its Stokes number [1].
+    roughness : float, optional
+        Gap at which the film ends and surfaces touch, at most the smallest gap, in place of β [length].
     between : str
         Contacts at `walls`, of `pairs` of bodies, or `all`.
     names : sequence of str
@@ -57,6 +60,7 @@ class ContactLaw:
     smallest_gap: Positive | None = None
     restitution: Annotated[Positive, Field(le=1)] | None = None
     restitution_stokes: Positive | None = None
+    roughness: Positive | None = None
     between: Between = "all"
     names: Annotated[tuple[str, ...], AnyRow, Field(max_length=2)] = ()
     field: str | None = None
@@ -82,25 +86,35 @@ class ContactLaw:
         part, options = self.law.part, self.law.options
         try:
             law = part(options, self.range, loads)
-            if self.restitution_stokes is None and (self.restitution in (None, 1.0) or has_own_restitution(part)):
+            loss = self._film_loss(loads)
+            if loss is None and (self.restitution in (None, 1.0) or has_own_restitution(part)):
                 return law
-            return Restitution(law, self.restitution or 1.0, self._film_loss(loads))
+            return Restitution(law, self.restitution or 1.0, loss)
         except SceneError as error:  # a law does not know its table
             subject = f"{self.field}.{error.subject.removeprefix('contact.')}"
             allowed = (error.allowed or "").replace("contact.range", f"{self.field}.range") or None
             raise SceneError(subject, error.found, allowed, error.remedy) from None
 
-    def _film_loss(self, loads: Loads) -> FilmLoss | None:
-        if self.restitution_stokes is None:
+    def _film_loss(self, loads: Loads) -> FilmLoss | RoughFilm | None:
+        """Loss of impacts that the film takes a part in; None if they are dry."""
+        given = {key: getattr(self, key) for key in ("restitution_stokes", "roughness")}
+        wanted = [key for key, value in given.items() if value is not None]
+        if not wanted:
             return None
-        given = f"{self.field}.restitution_stokes", self.restitution_stokes
+        first = f"{self.field}.{wanted[-1]}", given[wanted[-1]]
+        if len(wanted) == 2:
+            allowed = f"one of both, as {self.field}.restitution_stokes is the film's whole loss too"
+            raise SceneError(*first, allowed, "Remove either.")
         if has_own_restitution(self.law.part):
             allowed = f"a law whose restitution is not its own, as it is with {self.law.part.name!r}"
-            raise SceneError(*given, allowed, "Remove it, or choose another law.")
+            raise SceneError(*first, allowed, "Remove it, or choose another law.")
         if loads.film is None:
             allowed = "a fluid with a viscosity, which the Stokes number of an impact is made of"
-            raise SceneError(*given, allowed, "Remove it, or choose a backend with a fluid.")
-        return FilmLoss(self.restitution_stokes, loads.film, loads)
+            raise SceneError(*first, allowed, "Remove it, or choose a backend with a fluid.")
+        if self.restitution_stokes is not None:
+            return FilmLoss(self.restitution_stokes, loads.film, loads)
+        assert self.roughness is not None
+        return RoughFilm(self.roughness, loads.film, loads)
 
 
 def told_apart(laws: Sequence[ContactLaw], pieces: Iterable[Piece]) -> tuple[ContactLaw, ...]:
@@ -119,12 +133,15 @@ def has_own_restitution(law: type[ForceLaw]) -> bool:
 
 
 def check_laws(model: Model) -> None:
-    """Refuse, with SceneError, laws that act nowhere or cannot act there, or whose smallest gap is not below their
-    range."""
+    """Refuse, with SceneError, laws that act nowhere or cannot act there, whose smallest gap is not below their range,
+    or whose roughness is above that gap."""
     for law in model.named_laws:
         if law.smallest_gap is not None and law.smallest_gap >= law.range:
             allowed = f"a length above 0 and below {law.field}.range = {law.range}"
             raise SceneError(f"{law.field}.smallest_gap", law.smallest_gap, allowed, "Shorten it, or widen the range.")
+        if law.roughness is not None and law.roughness > law.aim:
+            allowed = f"a length up to the smallest gap, {law.aim:g}, a part of {law.field}.range = {law.range}"
+            raise SceneError(f"{law.field}.roughness", law.roughness, allowed, "Shorten it, or widen the range.")
         _check_names(model, law)
         _check_shapes(model, law)
 

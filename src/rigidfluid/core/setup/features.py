@@ -107,7 +107,7 @@ def _law(system: System, interaction: Interaction) -> str:
     text = f"law {without_restitution(law).name!r} below a gap of {law.range}"
     if isinstance(law, Restitution):
         text += f" with a restitution of {law.restitution:g}"
-        text += "" if law.loss is None else f" · exp(-{law.loss.decay:g}/St)"
+        text += "" if law.loss is None else law.loss.words
     if interaction.between != "all":
         text += {"walls": " at walls", "pairs": " between bodies"}[interaction.between]
     names = " and ".join(system.surfaces[surface] for surface in interaction.surfaces)

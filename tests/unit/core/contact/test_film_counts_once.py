@@ -15,6 +15,7 @@ from rigidfluid.core.contact.laws.film_loss import FilmLoss
 from rigidfluid.core.contact.laws.hunt_crossley import LEAST, hardening
 from rigidfluid.core.contact.laws.loads import inverse_mass
 from rigidfluid.core.contact.laws.restitution import Restitution
+from rigidfluid.core.contact.laws.rough_film import RoughFilm
 from rigidfluid.core.contact.laws.stokes_number import FILM_EDGE, stokes_number, stokes_number_taken
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.types import Film, Loads, Motion
@@ -91,6 +92,38 @@ def whole_rebound(dimension: int, law_range: float, stokes: float) -> float:
 @pytest.mark.parametrize("stokes", [30.0, 100.0, 1000.0])
 def test_law_and_film_together_leave_the_formula(dimension: int, law_range: float, stokes: float) -> None:
     assert whole_rebound(dimension, law_range, stokes) == pytest.approx(DRY * np.exp(-DECAY / stokes), abs=0.05)
+
+
+def rough_rebound(dimension: int, law_range: float, roughness: float, stokes: float) -> float:
+    held = replace(loads(dimension, stokes), smallest_gap=0.25 * law_range)
+    law = NormalLaw(NormalLaw.Options(epsilon="auto"), law_range, held)
+    return impact(Restitution(law, DRY, RoughFilm(roughness, FILM, held)), dimension, stokes).whole
+
+
+def film_share(dimension: int, roughness: float, stokes: float) -> float:
+    """Share of the speed that the exact film takes on the way from its edge to the roughness."""
+    if dimension == 3:
+        return float(np.log(EDGE / roughness)) / stokes
+    gaps, there = np.geomspace(roughness, EDGE, 4001), contact(EDGE, RADIUS, np.inf)
+    lost = np.trapezoid([cylinder_resistance(gap) for gap in gaps], gaps) * float(inverse_mass(there, LOADS)[0])
+    return float(lost * stokes_number(there, FILM, LOADS)[0]) / stokes
+
+
+@pytest.mark.parametrize(("dimension", "stokes"), [(2, 200.0), (2, 1000.0), (3, 30.0), (3, 100.0), (3, 1000.0)])
+@pytest.mark.parametrize("law_range", [0.02, 0.006])
+@pytest.mark.parametrize("roughness", [1e-3, 1e-4])
+def test_a_rough_ball_bounces_as_a_dry_one_behind_the_film_down_to_its_roughness(
+    dimension: int, stokes: float, law_range: float, roughness: float
+) -> None:
+    """On both ways the exact film takes its share once, whatever the law's range."""
+    share = film_share(dimension, roughness, stokes)
+    expected = max(DRY * (1.0 - share) - share, 0.0)
+    assert rough_rebound(dimension, law_range, roughness, stokes) == pytest.approx(expected, abs=0.03)
+
+
+def test_a_rough_ball_that_the_film_stops_does_not_come_back() -> None:
+    assert film_share(3, 1e-4, 7.0) == pytest.approx(1.0, abs=0.02)
+    assert rough_rebound(3, 0.02, 1e-4, 7.0) == 0.0
 
 
 @pytest.mark.parametrize(("dimension", "law_range"), [(2, 0.03), (2, 0.01), (3, 0.03), (3, 0.002)])

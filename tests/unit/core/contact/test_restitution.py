@@ -16,6 +16,7 @@ from rigidfluid.core.case.system import build_system
 from rigidfluid.core.contact.laws.film_loss import FilmLoss
 from rigidfluid.core.contact.laws.hunt_crossley import LEAST
 from rigidfluid.core.contact.laws.restitution import Restitution
+from rigidfluid.core.contact.laws.rough_film import RoughFilm
 from rigidfluid.core.contact.laws.stokes_number import stokes_number
 from rigidfluid.core.contact.path.substep import _greatest
 from rigidfluid.core.model.force_law import ForceLaw
@@ -158,6 +159,27 @@ def test_the_restitution_follows_the_stokes_number(speed: float) -> None:
     assert impact(law, speed) == pytest.approx(0.9 * np.exp(-35.0 / stokes), rel=1e-5)
 
 
+@pytest.mark.parametrize("speed", [4.0, 100.0])
+def test_without_a_resolved_film_the_law_takes_the_film_down_to_the_roughness(speed: float) -> None:
+    rough = RoughFilm(0.1 * RANGE, FILM, LOADS)
+    stokes = float(stokes_number(contact(RANGE), FILM, LOADS)[0]) * speed
+    share = float(rough.taken(contact(RANGE))[0]) / stokes
+    law = Restitution(NormalLaw(NormalLaw.Options(epsilon=1e-6), RANGE), 0.9, rough)
+    assert impact(law, speed) == pytest.approx(0.9 * (1.0 - share) - share, rel=1e-5)
+
+
+@pytest.mark.parametrize("cell", [0.0, 0.01, np.inf])
+def test_the_restitution_of_rough_surfaces_grows_with_the_speed_up_to_the_dry_one(cell: float) -> None:
+    """So that each state has one speed at range."""
+    rough = RoughFilm(0.01 * RANGE, Film(0.1, np.array([0.1, 0.1]), cell, True), LOADS)
+    law = NormalLaw(NormalLaw.Options(epsilon=1e-6), RANGE)
+    restitution = rough.restitution(0.9, law, contact(RANGE), np.ones(1))
+    found = [float(restitution(np.array([speed]))[0]) for speed in np.geomspace(1e-3, 1e4, 200)]
+    assert np.all(np.diff(found) >= 0.0)
+    assert found[0] == 0.0
+    assert 0.85 < found[-1] <= 0.9
+
+
 def test_slow_impacts_end_with_the_least_restitution() -> None:
     law = Restitution(NormalLaw(NormalLaw.Options(epsilon=1e-6), RANGE), 0.9, FilmLoss(35.0, FILM, LOADS))
     assert impact(law, 0.2) == pytest.approx(LEAST, rel=1e-5)
@@ -226,6 +248,13 @@ def test_each_interaction_has_its_own() -> None:
         (law_table("spring-dashpot", 0.5, restitution_stokes=35.0), "restitution_stokes", "its own"),
         ({"restitution": 0.5}, "restitution", "law"),
         ({"restitution_stokes": 35.0}, "restitution_stokes", "law"),
+        (law_table("normal", 0.5, roughness=0.001), "roughness", "viscosity"),
+        (law_table("spring-dashpot", 0.5, roughness=0.001), "roughness", "its own"),
+        (law_table("normal", 0.5, roughness=0.001, restitution_stokes=35.0), "roughness", "Remove either"),
+        (law_table("normal", 0.5, roughness=1.5 * RANGE), "roughness", "widen the range"),
+        (law_table("normal", 0.5, roughness=0.3 * RANGE), "roughness", "smallest gap"),
+        (law_table("normal", 0.5, roughness=-0.001), "roughness", "above 0|greater than 0"),
+        ({"roughness": 0.001}, "roughness", "law"),
         (law_table("normal", 1.1), "restitution", "1"),
         (law_table("normal", 0.0), "restitution", "0"),
     ],

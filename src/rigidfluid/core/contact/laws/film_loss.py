@@ -60,6 +60,11 @@ class FilmLoss:
     film: Film
     loads: Loads
 
+    @property
+    def words(self) -> str:
+        """Words after those for the dry restitution."""
+        return f" · exp(-{self.decay:g}/St)"
+
     def restitution(
         self, dry: float, law: ForceLaw, contacts: Contacts, mass: FloatArray
     ) -> Callable[[FloatArray], FloatArray]:

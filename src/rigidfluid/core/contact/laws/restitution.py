@@ -8,6 +8,7 @@ import numpy as np
 
 from rigidfluid.core.contact.laws.film_loss import FilmLoss
 from rigidfluid.core.contact.laws.hunt_crossley import LEAST, Hardening, excess, excess_by_speed, hardening
+from rigidfluid.core.contact.laws.rough_film import RoughFilm
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.force_law import ForceLaw
@@ -29,17 +30,18 @@ class Restitution(ForceLaw):
     The damper acts along the normal alone. Its force neither presses at rest nor pulls, and fades out at range as the
     law does; where the law itself pulls, it is zero.
 
-    A ``loss`` makes a whole impact, the resolved film included, end with restitution · exp(-β/St) of the speed at the
-    film's edge, St the Stokes number there (Legendre, Daniel and Guiraud, Phys. Fluids 17 (2005) 097105,
-    doi:10.1063/1.2010527): ``restitution`` is then the limit of ever faster impacts, and e of the law makes up for the
-    film's share, but is at least LEAST. SceneError is raised if the law has no energy or dampers of its own, or the
-    restitution is too small.
+    A ``loss`` is of a whole impact, the resolved film included: ``restitution`` is then the limit of ever faster
+    impacts, and e of the law makes up for the film's share, but is at least LEAST. With a `FilmLoss` the impact ends
+    with restitution · exp(-β/St) of the speed at the film's edge, St the Stokes number there (Legendre, Daniel and
+    Guiraud, Phys. Fluids 17 (2005) 097105, doi:10.1063/1.2010527). With a `RoughFilm` it is a dry impact behind a film
+    that ends at the surfaces' roughness (Barnocky and Davis, Phys. Fluids 31 (1988) 1324, doi:10.1063/1.866725).
+    SceneError is raised if the law has no energy or dampers of its own, or the restitution is too small.
     """
 
     name: ClassVar[str] = "restitution"
     dissipative: bool = True
 
-    def __init__(self, law: ForceLaw, restitution: float, loss: FilmLoss | None = None) -> None:
+    def __init__(self, law: ForceLaw, restitution: float, loss: FilmLoss | RoughFilm | None = None) -> None:
         super().__init__(law.options, law.range, law.loads)
         if not law.conservative or law.dissipative:
             kind = "dampers of its own" if law.dissipative else "no energy to give back"
