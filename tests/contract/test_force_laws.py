@@ -1,3 +1,5 @@
+from typing import ClassVar
+
 import numpy as np
 import pytest
 from touching import unstacked
@@ -5,9 +7,11 @@ from touching import unstacked
 from rigidfluid.core.contact.laws.film_loss import FilmLoss
 from rigidfluid.core.contact.laws.repulsion import Repulsion
 from rigidfluid.core.contact.laws.restitution import Restitution
-from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.force_law import Between, ForceLaw, Overlap, Sign
 from rigidfluid.core.model.interactions import Interaction, SumOfLaws
-from rigidfluid.core.model.types import Film
+from rigidfluid.core.model.part import PartOptions
+from rigidfluid.core.model.types import Contacts, Film
 from rigidfluid.forces.barrier import BarrierLaw
 from rigidfluid.forces.centre import CentreLaw
 from rigidfluid.forces.contact import ContactPointLaw
@@ -75,3 +79,132 @@ class TestLubrication(ForceLawContract):
     @pytest.fixture
     def law(self) -> ForceLaw:
         return LubricationLaw(LubricationOptions(viscosity=0.1, cutoff=0.1 * RANGE), RANGE)
+
+
+class Declared(ForceLaw):
+    """F = w n, a formula to derive others from."""
+
+    name: ClassVar[str] = "declared"
+
+    def along(self, contacts: Contacts) -> FloatArray:
+        return self.range - contacts.gap
+
+    def force(self, contacts: Contacts) -> FloatArray:
+        return np.where(contacts.gap < self.range, self.along(contacts), 0.0)[:, None] * contacts.normal
+
+    def energy(self, contacts: Contacts) -> FloatArray:
+        return 0.5 * np.maximum(self.range - contacts.gap, 0.0) ** 2
+
+    def stiffness(self, contacts: Contacts) -> FloatArray:
+        return np.where(contacts.gap < self.range, 1.0, 0.0)
+
+
+class Attractive(Declared):
+    sign: Sign = "attracts"
+    overlap: Overlap = "attracts"
+
+    def along(self, contacts: Contacts) -> FloatArray:
+        return contacts.gap - self.range
+
+    def energy(self, contacts: Contacts) -> FloatArray:
+        return -super().energy(contacts)
+
+    def stiffness(self, contacts: Contacts) -> FloatArray:
+        return -super().stiffness(contacts)
+
+
+class SoftWall(Declared):
+    """An energy of finite height, flat in overlap."""
+
+    overlap: Overlap = "either"
+
+    def force(self, contacts: Contacts) -> FloatArray:
+        return (contacts.gap > 0.0)[:, None] * super().force(contacts)
+
+    def energy(self, contacts: Contacts) -> FloatArray:
+        return np.minimum(super().energy(contacts), 0.5 * self.range**2)
+
+    def stiffness(self, contacts: Contacts) -> FloatArray:
+        return (contacts.gap > 0.0) * super().stiffness(contacts)
+
+
+class PairsOnly(Declared):
+    acts_in: Between = "pairs"
+
+    def force(self, contacts: Contacts) -> FloatArray:
+        return ~contacts.at_wall[:, None] * super().force(contacts)
+
+    def energy(self, contacts: Contacts) -> FloatArray:
+        return ~contacts.at_wall * super().energy(contacts)
+
+    def stiffness(self, contacts: Contacts) -> FloatArray:
+        return ~contacts.at_wall * super().stiffness(contacts)
+
+
+class WallsOnly(PairsOnly):
+    acts_in: Between = "walls"
+
+    def force(self, contacts: Contacts) -> FloatArray:
+        return contacts.at_wall[:, None] * Declared.force(self, contacts)
+
+    def energy(self, contacts: Contacts) -> FloatArray:
+        return contacts.at_wall * Declared.energy(self, contacts)
+
+    def stiffness(self, contacts: Contacts) -> FloatArray:
+        return contacts.at_wall * Declared.stiffness(self, contacts)
+
+
+class Constant(Declared):
+    """A force that begins at once."""
+
+    vanishes_at_range: bool = False
+
+    def along(self, contacts: Contacts) -> FloatArray:
+        return np.full(len(contacts), self.range)
+
+    def energy(self, contacts: Contacts) -> FloatArray:
+        return self.range * np.maximum(self.range - contacts.gap, 0.0)
+
+    def stiffness(self, contacts: Contacts) -> FloatArray:
+        return np.zeros(len(contacts))
+
+
+class TestDeclared(ForceLawContract):
+    @pytest.fixture(
+        params=[Declared, Attractive, SoftWall, PairsOnly, WallsOnly, Constant], ids=lambda law: law.__name__
+    )
+    def law(self, request: pytest.FixtureRequest) -> ForceLaw:
+        return request.param(PartOptions(), RANGE)
+
+
+@pytest.mark.parametrize(
+    ("law", "key", "wrong"),
+    [
+        (Attractive, "sign", "repels"),
+        (Declared, "sign", "attracts"),
+        (SoftWall, "overlap", "repels"),
+        (Declared, "overlap", "attracts"),
+        (PairsOnly, "acts_in", "all"),
+        (WallsOnly, "acts_in", "pairs"),
+        (Constant, "vanishes_at_range", True),
+        (Declared, "vanishes_at_range", False),
+    ],
+)
+def test_a_wrong_declaration_fails(law: type[ForceLaw], key: str, wrong: object) -> None:
+    one, contract = law(PartOptions(), RANGE), ForceLawContract()
+    tests = (
+        contract.test_continuous_at_range,
+        contract.test_acts_along_the_normal_as_it_declares,
+        contract.test_does_in_overlap_what_it_declares,
+        contract.test_has_the_kinds_of_force_that_it_declares,
+    )
+    for test in tests:
+        test(one, 2)
+    setattr(one, key, wrong)
+    failed = 0
+    for test in tests:
+        try:
+            test(one, 2)
+        except AssertionError:
+            failed += 1
+    assert failed

@@ -114,11 +114,11 @@ def representative_contacts(system: System) -> Iterator[RepresentativeContacts]:
 
 
 def design_contacts(system: System) -> Iterator[DesignContacts]:
-    """Representative contacts in which a law with an energy acts, with the loads and speeds expected of them."""
+    """Representative contacts in which a law that repels acts, with the loads and speeds expected of them."""
     kind = {body: number for number, alike in enumerate(body_classes(system)) for body in alike}
     for design in representative_contacts(system):
         law = acting_together(design.interactions)
-        if law is not None and law.conservative:
+        if law is not None and law.keeps_apart:
             yield _design(system, law, design, kind)
 
 

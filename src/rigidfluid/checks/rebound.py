@@ -78,7 +78,7 @@ def _finding(design: DesignContacts, film: Film, row: int, rebound: _Rebound) ->
     body."""
     (stokes, resolved, back), share = rebound, rebound.expected
     seen = f"come back with {figure(share)} of their speed" if share else "do not come back"
-    lossless = next(one for one in design.interactions if one.law.conservative)
+    lossless = next(one for one in design.interactions if one.law.keeps_apart)
     field = lossless.field
     text = f"{' and '.join(design.names(row))}: the impact's Stokes number is {figure(stokes)}, where balls in liquids "
     text += f"{seen}, and the law gives back all that reaches its range; "

@@ -16,7 +16,7 @@ def strength_remedy(design: DesignContacts, share: float) -> tuple[Mapping[str, 
     if share <= 0.0:
         return {}, "Take a law that repels up to contact."
     enough = {"strength": 1.0 / share}
-    repelling = [interaction for interaction in design.interactions if interaction.law.conservative]
+    repelling = [interaction for interaction in design.interactions if interaction.law.keeps_apart]
     if len(repelling) > 1:
         fields = " and ".join(interaction.field for interaction in repelling)
         return enough, f"Make the laws of {fields} {round_up(1.0 / share)} times as strong, or widen their ranges."

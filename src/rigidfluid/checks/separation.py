@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from rigidfluid.checks.finding import Finding, Grade, figure
 from rigidfluid.core.contact.laws.strength import chosen_strengths
 from rigidfluid.core.contact.pairs.representative_contacts import body_classes, facing_normal, free
 from rigidfluid.core.geometry.surface import Surface
+from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.system import System
 
 
@@ -20,12 +21,12 @@ def law_findings(system: System) -> Iterator[Finding]:
     moving = [i for i in free(system, range(len(system.bodies))) if _moves(system, i)]
     if not moving:
         return
-    if system.law is not None and system.law.conservative:
+    if system.law is not None and system.law.keeps_apart:
         yield from _lawless_findings(system)
         return
     text = "nothing keeps bodies apart"
     laws = " and ".join(repr(interaction.law.name) for interaction in system.interactions)
-    text += f": law {laws} only takes energy out" if laws else ": the scene names no law"
+    text += f": law {laws} {_only(system.interactions)}" if laws else ": the scene names no law"
     grade: Grade = "warning" if system.has_fluid else "error"
     remedy = 'Set contact.law = "normal", contact.range and contact.epsilon = "auto".'
     yield Finding(grade, "law", (system.surfaces[moving[0]],), text, remedy, {"moving_bodies": len(moving)})
@@ -33,11 +34,11 @@ def law_findings(system: System) -> Iterator[Finding]:
 
 def _lawless_findings(system: System) -> Iterator[Finding]:
     for design in representative_contacts(system):
-        if not any(interaction.law.conservative for interaction in design.interactions):
+        if not any(interaction.law.keeps_apart for interaction in design.interactions):
             names = system.surfaces[design.contacts.body_a[0]], system.surfaces[design.contacts.body_b[0]]
             laws = " and ".join(interaction.field for interaction in design.interactions)
             text = f"nothing keeps {names[0]} and {names[1]} apart: "
-            text += f"{laws} only takes energy out" if laws else "no law acts between them"
+            text += f"{laws} {_only(design.interactions)}" if laws else "no law acts between them"
             remedy = "Add an [[interaction]] for them; ignore this if it is intended."
             yield Finding("warning", "law", names, text, remedy, {"pairs": len(design.contacts)})
 
@@ -61,6 +62,10 @@ def strength_findings(system: System) -> Iterator[Finding]:
         epsilon, speed, gap = (figure(row[key]) for key in ("epsilon", "impact_speed", "smallest_gap"))
         text = f"{a} and {b}: epsilon is {epsilon}, so that an impact at a speed of {speed} ends at a gap of {gap}"
         yield Finding("note", "auto", (a, b), text, found=row)
+
+
+def _only(interactions: Sequence[Interaction]) -> str:
+    return "only attracts" if any(one.law.conservative for one in interactions) else "only takes energy out"
 
 
 def _moves(system: System, body: int) -> bool:

@@ -23,8 +23,9 @@ class ForceLawContract:
     """A short-range force that an energy gives, with or without damping, or damping alone.
 
     Override the fixture ``law``; and ``make_contacts`` for a law that needs other contacts than two balls and a ball at
-    a wall: both balls are bodies 0 and 1, the wall is surface 2. The law itself declares its behaviour in overlap, and
-    whether it has an energy and damping at all: ``overlap``, ``conservative``, ``dissipative``.
+    a wall: both balls are bodies 0 and 1, the wall is surface 2. The law itself declares its behaviour: ``sign``,
+    ``overlap``, ``acts_in``, ``vanishes_at_range``, and whether it has an energy and damping at all, ``conservative``
+    and ``dissipative``.
     """
 
     gap_fractions: ClassVar[tuple[float, ...]] = (0.03, 0.2, 0.5, 0.8, 0.97)
@@ -48,33 +49,38 @@ class ForceLawContract:
 
     def test_zero_beyond_range(self, law: ForceLaw, dimension: int) -> None:
         """No force of any kind, no energy and no stiffness from the range on."""
-        contacts = self.make_contacts(law.range * np.array([1.0, 1.001, 2.0, 1e6]), dimension)
+        contacts = self._contacts_of(law, (1.0, 1.001, 2.0, 1e6), dimension)
         for column in (law.force, law.energy, law.stiffness):
             assert not column(contacts).any()
         assert not law.damping(contacts, _motion(contacts)).any()
 
     def test_continuous_at_range(self, law: ForceLaw, dimension: int) -> None:
-        """Force and energy fade out as the gap grows to the range."""
+        """Force and energy fade out as the gap grows to the range; the force may jump there where the law says so."""
         _needs_energy(law)
-        force = np.linalg.norm(law.force(self._contacts_of(law, (0.5, 1 - 1e-9), dimension)), axis=1)
-        energy = law.energy(self._contacts_of(law, (0.5, 1 - 1e-9), dimension))
-        assert np.all(force[1::2] < 1e-6 * force[::2])
-        assert np.all(energy[1::2] < 1e-6 * energy[::2])
+        inside = self.gap_fractions if law.sign == "either" else (0.5,)
+        contacts, each = self._contacts_of(law, (*inside, 1 - 1e-9), dimension), len(inside) + 1
+        force, energy = np.linalg.norm(law.force(contacts), axis=1), np.abs(law.energy(contacts))
+        largest_force, largest_energy = (column.reshape(-1, each)[:, :-1].max(axis=1) for column in (force, energy))
+        assert np.all(energy[each - 1 :: each] < 1e-6 * largest_energy)
+        assert np.all(force[each - 1 :: each] < 1e-6 * largest_force) == law.vanishes_at_range
 
-    def test_repels_along_the_normal(self, law: ForceLaw, dimension: int) -> None:
-        """The force on a points along the normal, away from b."""
+    def test_acts_along_the_normal_as_it_declares(self, law: ForceLaw, dimension: int) -> None:
+        """The force on a points along the normal, away from b if the law repels, towards it if it attracts."""
         _needs_energy(law)
         contacts = self._contacts_of(law, self.gap_fractions, dimension)
         along = _along(law, contacts)
-        assert np.all(along > 0)
+        if law.sign != "either":
+            assert np.all(along > 0 if law.sign == "repels" else along < 0)
         np.testing.assert_allclose(
-            law.force(contacts), along[:, None] * contacts.normal, rtol=0, atol=1e-12 * along.max()
+            law.force(contacts), along[:, None] * contacts.normal, rtol=0, atol=1e-12 * np.abs(along).max()
         )
 
     def test_force_is_minus_the_slope_of_the_energy(self, law: ForceLaw, dimension: int) -> None:
         """F = -dU/dgap, by a central difference of fourth order."""
         contacts = self._contacts_of(law, self._finite_fractions(law), dimension)
-        np.testing.assert_allclose(_along(law, contacts), -_slope(law.energy, contacts, law.range), rtol=1e-6)
+        found = _along(law, contacts)
+        expected = -_slope(law.energy, contacts, law.range)
+        np.testing.assert_allclose(found, expected, rtol=1e-6, atol=self._rounding(law, found))
 
     def test_stiffness_is_minus_the_slope_of_the_force(self, law: ForceLaw, dimension: int) -> None:
         """Stiffness = -dF/dgap, by a central difference of fourth order."""
@@ -84,7 +90,7 @@ class ForceLawContract:
         np.testing.assert_allclose(found, -slope, rtol=1e-6, atol=1e-9 * np.abs(found).max())
 
     def test_does_in_overlap_what_it_declares(self, law: ForceLaw, dimension: int) -> None:
-        """Repels or attracts, in either case without a jump at contact, or has an infinite energy and refuses."""
+        """Repels or attracts, without a jump at contact, or has any force, or an infinite energy and refuses."""
         _needs_energy(law)
         overlapping = self._contacts_of(law, self.overlap_fractions, dimension)
         if law.overlap == "unbounded":
@@ -95,20 +101,24 @@ class ForceLawContract:
             near = law.energy(self._contacts_of(law, (1e-2, 1e-4, 1e-8, 1e-16), dimension)).reshape(-1, 4)
             assert np.all(np.diff(near, axis=1) > 0)
             return
-        sign = 1 if law.overlap == "repels" else -1
-        assert np.all(sign * _along(law, overlapping) > 0)
+        columns: list[Column] = [law.energy]
+        if law.overlap != "either":
+            sign = 1 if law.overlap == "repels" else -1
+            assert np.all(sign * _along(law, overlapping) > 0)
+            columns += [law.stiffness, lambda contacts: _along(law, contacts)]
         both = (-1e-9, 1e-9)
-        for column in (law.energy, law.stiffness, lambda contacts: _along(law, contacts)):
-            before, after = column(self._contacts_of(law, both, dimension)).reshape(-1, 2).T
-            largest = np.abs(column(self._contacts_of(law, self.gap_fractions, dimension))).max()
+        for one in columns:
+            before, after = one(self._contacts_of(law, both, dimension)).reshape(-1, 2).T
+            largest = np.abs(one(self._contacts_of(law, self.gap_fractions, dimension))).max()
             np.testing.assert_allclose(before, after, rtol=0, atol=1e-6 * largest)
 
     def test_has_the_kinds_of_force_that_it_declares(self, law: ForceLaw, dimension: int) -> None:
         """An energy if conservative, damping if dissipative, one of both at least, and zeros where it has none."""
         assert law.conservative or law.dissipative
         contacts = self._contacts_of(law, self.gap_fractions, dimension)
-        for column in (law.force, law.energy, law.stiffness):
+        for column in (law.force, law.energy):
             assert column(contacts).any() == law.conservative
+        assert law.conservative or not law.stiffness(contacts).any()
         assert law.damping(contacts, _motion(contacts)).any() == law.dissipative
 
     def test_damping_never_adds_energy(self, law: ForceLaw, dimension: int) -> None:
@@ -142,6 +152,8 @@ class ForceLawContract:
     def test_swapping_the_pair_turns_the_force_round(self, law: ForceLaw, dimension: int) -> None:
         """Which of two bodies is called a makes no difference."""
         contacts = self._pairs_of(law, dimension)
+        if len(contacts) == 0:
+            pytest.skip("the law acts at walls alone")
         motion = _motion(contacts)
         swapped = Contacts(
             body_a=contacts.body_b,
@@ -162,6 +174,8 @@ class ForceLawContract:
     def test_a_pair_gains_no_momentum(self, law: ForceLaw, dimension: int) -> None:
         """With ``core/mechanics/wrenches``, all forces of the law have no resultant and no moment about any point."""
         contacts = self._pairs_of(law, dimension)
+        if len(contacts) == 0:
+            pytest.skip("the law acts at walls alone")
         count = 1 + int(max(contacts.body_a.max(), contacts.body_b.max()))
         position = np.random.default_rng(8).normal(size=(count, dimension))
         pose = Pose(position, np.tile(np.eye(1, 1 if dimension == 2 else 4), (len(position), 1)))
@@ -185,7 +199,14 @@ class ForceLawContract:
             np.testing.assert_allclose(law.damping(some, moving), law.damping(contacts, motion)[chosen], rtol=1e-14)
 
     def _contacts_of(self, law: ForceLaw, fractions: tuple[float, ...], dimension: int) -> Contacts:
-        return self.make_contacts(law.range * np.array(fractions), dimension)
+        contacts = self.make_contacts(law.range * np.array(fractions), dimension)
+        if law.acts_in == "all":
+            return contacts
+        return _taken(contacts, np.flatnonzero(contacts.at_wall == (law.acts_in == "walls")))
+
+    def _rounding(self, law: ForceLaw, force: FloatArray) -> float:
+        """Rounding of slopes, which a force that is zero in part of the range is compared with."""
+        return 1e-9 * float(np.abs(force).max()) if law.sign == "either" or law.overlap == "either" else 0.0
 
     def _finite_fractions(self, law: ForceLaw) -> tuple[float, ...]:
         return self.gap_fractions if law.overlap == "unbounded" else (*self.gap_fractions, *self.overlap_fractions)

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from rigidfluid.core.model.force_law import ForceLaw
-from rigidfluid.core.model.interactions import Between
+from rigidfluid.core.model.force_law import Between, ForceLaw
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.nested.part_options import own_options, refuse_unread
 from rigidfluid.core.scene.contact_tables import ContactTable, InteractionTable

@@ -14,6 +14,10 @@ from rigidfluid.core.model import part_answers as parts
 from rigidfluid.core.model.part import Part, PartOptions
 from rigidfluid.core.model.types import Contacts, Loads, Motion
 
+Between = Literal["all", "walls", "pairs"]
+Sign = Literal["repels", "attracts", "either"]
+Overlap = Literal["repels", "attracts", "either", "unbounded"]
+
 
 class ForceLaw(Part):
     """A short-range force between two surfaces: one that an energy gives, and one that takes energy out.
@@ -40,9 +44,15 @@ class ForceLaw(Part):
     """Tell whether it has an energy; else force, energy and stiffness are zero."""
     dissipative: bool = False
     """Tell whether it has damping; else damping is zero."""
-    overlap: Literal["repels", "attracts", "unbounded"] = "repels"
-    """Behaviour of the energy's force at gap < 0; unbounded: the energy is infinite, and force and stiffness raise
-    StepRejected."""
+    sign: Sign = "repels"
+    """Sign of the energy's force between contact and range; "either" for one that changes or is zero in part of it."""
+    overlap: Overlap = "repels"
+    """Behaviour of the energy's force at gap < 0; either: any force, which may jump at contact; unbounded: the energy
+    is infinite, and force and stiffness raise StepRejected."""
+    acts_in: Between = "all"
+    """Contacts that it is made for: `walls`, `pairs` of bodies, or `all`; it is not evaluated in others."""
+    vanishes_at_range: bool = True
+    """Tell whether its force fades out towards range; else it jumps to zero there. The energy is zero there anyway."""
     loads: Loads | None = None
     """Loads from which a law sets its strength; bodies of equal loads then meet alike."""
 
@@ -55,6 +65,11 @@ class ForceLaw(Part):
     def ranges(self) -> tuple[float, ...]:
         """The gaps where it begins, in order: its range, and those of its parts where it has several [length]."""
         return (self.range,)
+
+    @property
+    def keeps_apart(self) -> bool:
+        """Whether it can hold two surfaces apart at rest: it has an energy, and does not only attract."""
+        return self.conservative and self.sign != "attracts"
 
     @abstractmethod
     @gives(rows(lambda _, contacts: contacts.normal.shape, shorter=True))

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import ClassVar
 
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.model.contacts import select
-from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.force_law import Between, ForceLaw, Overlap, Sign
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Motion
-
-Between = Literal["all", "walls", "pairs"]
 
 
 @dataclass(frozen=True)
@@ -61,8 +59,8 @@ def acting_together(interactions: Sequence[Interaction]) -> ForceLaw | None:
 class SumOfLaws(ForceLaw):
     """F = Σ F_l, U = Σ U_l, k = Σ k_l over the laws l of the interactions, at least one, that act in a contact.
 
-    Its range is the longest. It is conservative and dissipative if any law is. In overlap it is unbounded if any law
-    is, and counted on to repel only if all laws with an energy do.
+    Its range is the longest. It is conservative and dissipative if any law is. It repels, or attracts, if all laws with
+    an energy do; in overlap it is unbounded if any law is, and counted on to repel only if all laws with an energy do.
     """
 
     name: ClassVar[str] = "sum"
@@ -73,7 +71,10 @@ class SumOfLaws(ForceLaw):
         self.interactions = tuple(interactions)
         self.conservative = any(law.conservative for law in laws)
         self.dissipative = any(law.dissipative for law in laws)
-        self.overlap = _overlap_of([law for law in laws if law.conservative])
+        with_energy = [law for law in laws if law.conservative]
+        self.sign = _sign_of(with_energy)
+        self.overlap = _overlap_of(with_energy)
+        self.vanishes_at_range = all(law.vanishes_at_range for law in with_energy)
 
     @property
     def ranges(self) -> tuple[float, ...]:
@@ -117,6 +118,14 @@ class SumOfLaws(ForceLaw):
                 yield interaction, select(contacts, chosen), chosen
 
 
-def _overlap_of(laws: Sequence[ForceLaw]) -> Literal["repels", "attracts", "unbounded"]:
+def _sign_of(laws: Sequence[ForceLaw]) -> Sign:
+    found = {law.sign for law in laws}
+    return found.pop() if len(found) == 1 else "either" if found else "repels"
+
+
+def _overlap_of(laws: Sequence[ForceLaw]) -> Overlap:
     found = {law.overlap for law in laws}
-    return "unbounded" if "unbounded" in found else "attracts" if "attracts" in found else "repels"
+    for overlap in ("unbounded", "either", "attracts"):
+        if overlap in found:
+            return overlap
+    return "repels"

@@ -9,12 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.model.kinematics import EACH_ITS_OWN, Kinematics
 from rigidfluid.core.model.ranks import ALONE, Ranks
+
+if TYPE_CHECKING:
+    from rigidfluid.core.model.force_law import ForceLaw
 
 _FROM_RADII: FloatArray = np.empty(0)
 """Placeholder for effective radii that are not given, and follow from the radii of curvature."""
@@ -112,7 +116,7 @@ class Loads:
     ``stacked_energy`` (n,), ½ m v² [energy], are those of the body and of all that may come to press on it, infinite
     where its twist is given. ``film``: that which brakes them before, None without a fluid. In a fluid ``travel_speed``
     (n,) is the highest expected between body and fluid, and ``flow_speed`` that of the fluid as it is given on the
-    boundary and at the start [length/time].
+    boundary and at the start [length/time]. ``attraction``: all laws that attract, whose work contacts must hold too.
     """
 
     mass: FloatArray
@@ -124,6 +128,7 @@ class Loads:
     film: Film | None = None
     travel_speed: FloatArray | None = None
     flow_speed: float = 0.0
+    attraction: ForceLaw | None = None
 
 
 @dataclass(frozen=True, slots=True)

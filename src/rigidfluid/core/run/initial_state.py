@@ -97,7 +97,7 @@ def _starts_at_once(system: System, state: State, faces: bool) -> bool:
         return False
     given = not isinstance(problem.initial, str)
     driven = faces and (problem.inertia or not system.motions.prescribed.all())
-    released = state.ledger.contact > 0.0 or (not problem.inertia and system.weight.any())
+    released = state.ledger.contact != 0.0 or (not problem.inertia and system.weight.any())
     return bool(_bodies_move(state) or given or driven or released)
 
 

@@ -22,6 +22,7 @@ from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Twist
 from rigidfluid.core.nested.placing import initial_pose, initial_twist
+from rigidfluid.core.setup.contact_laws import interactions_of
 from rigidfluid.core.setup.geometry_checks import check_geometry
 from rigidfluid.core.setup.impact import creeping_resistances
 from rigidfluid.core.setup.joints import build_joints, joined_bodies
@@ -50,7 +51,7 @@ def assemble(model: Model) -> System:
     joints = build_joints(model, pose, motions, given, _least_resistance(model))
     motions = motions.starting_with(joints.fitting(motions.pose, motions.twist, 0.0))
     loads = build_loads(model, masses, motions, joints)
-    interactions = tuple(law.interaction(model.surfaces, loads) for law in model.named_laws)
+    interactions = interactions_of(model.named_laws, model.surfaces, loads)
     chosen, why = model.detection
     detector, law = chosen.part(chosen.options, model.shapes, model.walls), acting_together(interactions)
     backend = model.fluid.backend

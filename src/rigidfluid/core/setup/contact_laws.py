@@ -12,8 +12,8 @@ from rigidfluid.core.contact.laws.film_loss import FilmLoss
 from rigidfluid.core.contact.laws.restitution import Restitution
 from rigidfluid.core.contact.laws.rough_film import RoughFilm
 from rigidfluid.core.geometry.piece import Piece, all_names
-from rigidfluid.core.model.force_law import ForceLaw
-from rigidfluid.core.model.interactions import Between, Interaction
+from rigidfluid.core.model.force_law import Between, ForceLaw
+from rigidfluid.core.model.interactions import Interaction, acting_together
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.model.types import Loads
 from rigidfluid.core.scene.spelling import suggestion
@@ -70,6 +70,11 @@ class ContactLaw:
         """Gap at which the expected impact is to end [length]."""
         return self.smallest_gap or SMALLEST_GAP * self.range
 
+    @property
+    def acts_in(self) -> Between:
+        """Contacts that the table asks for, or of all those that the law is made for."""
+        return self.law.part.acts_in if self.between == "all" else self.between
+
     def interaction(self, surfaces: Sequence[str], loads: Loads) -> Interaction:
         """The law made for ``loads``, with the contacts that it acts in; ``surfaces`` are the names of bodies and then
         of the domain's pieces. Raises SceneError if the law refuses its options or loads."""
@@ -77,7 +82,7 @@ class ContactLaw:
         return Interaction(
             field=self.field,
             law=self._made(replace(loads, smallest_gap=self.aim)),
-            between=self.between,
+            between=self.acts_in,
             surfaces=tuple(surfaces.index(name) for name in self.names),
             smallest_gap=self.smallest_gap,
         )
@@ -117,6 +122,14 @@ class ContactLaw:
         return RoughFilm(self.roughness, loads.film, loads)
 
 
+def interactions_of(laws: Sequence[ContactLaw], surfaces: Sequence[str], loads: Loads) -> tuple[Interaction, ...]:
+    """The laws made for ``loads``, those that attract first: the others hold what these pull together."""
+    attracting = {law.field: law.interaction(surfaces, loads) for law in laws if law.law.part.sign == "attracts"}
+    if attracting:
+        loads = replace(loads, attraction=acting_together(tuple(attracting.values())))
+    return tuple(attracting.get(law.field) or law.interaction(surfaces, loads) for law in laws)
+
+
 def told_apart(laws: Sequence[ContactLaw], pieces: Iterable[Piece]) -> tuple[ContactLaw, ...]:
     """The laws of a model, each with its field, and with names of ``pieces`` in the place of other names of these."""
     fields = ["contact"] if len(laws) == 1 else [f"interaction.{number}" for number in range(len(laws))]
@@ -153,10 +166,14 @@ def _check_names(model: Model, law: ContactLaw) -> None:
             raise _unknown(model, f"{law.field}.names.{number}", name)
     at_walls = any(name in walls for name in law.names)
     pair = len(law.names) == 2
+    made_for = law.law.part.acts_in
+    if made_for not in ("all", law.acts_in):
+        allowed = f"{made_for}, where {law.law.part.name!r} acts"
+        raise SceneError(f"{law.field}.between", law.between, allowed, "Correct it, or choose another law.")
     if pair and (len(set(law.names)) == 1 or all(name in walls for name in law.names)):
         raise _nowhere(law, "two different surfaces, one of them a body")
-    if (at_walls and law.between == "pairs") or (pair and not at_walls and law.between == "walls"):
-        raise _nowhere(law, f"surfaces that meet with between = {law.between!r}")
+    if (at_walls and law.acts_in == "pairs") or (pair and not at_walls and law.acts_in == "walls"):
+        raise _nowhere(law, f"surfaces that meet with between = {law.acts_in!r}")
     wholes = [model.all_bodies[bodies.index(name)].part_of for name in law.names if name in bodies]
     if pair and len(wholes) == 2 and wholes[0] is not None and wholes[0] == wholes[1]:
         raise _nowhere(law, "bodies that are not parts of one articulated body, which do not touch")

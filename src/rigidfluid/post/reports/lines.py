@@ -116,13 +116,14 @@ def energy_plot(results: Results) -> Figure:
     """Plot the energy supplied against its shares, dissipated, stored or lost, and the residual of the balance."""
     figure, (axes, below) = time_panels(2, height=2.8)
     energy = results.energy
-    initial = energy["kinetic"][0] + energy["contact"][0]
+    contact = energy["contact"] - min(energy["contact"].min(), 0.0)  # attraction counts from its lowest
+    initial = energy["kinetic"][0] + contact[0]
     supplied = initial + sum(energy[name] for name in ("gravity", "boundary", "control", "body_force"))
     shares = {
         "dissipated": (energy["dissipation"], ORANGE),
         "taken by stabilisation": (energy["grad_div_loss"], SKY),
         "kinetic": (energy["kinetic"], BLUE),
-        "in contacts": (energy["contact"], GREEN),
+        "in contacts": (contact, GREEN),
         "taken by dampers": (energy["contact_loss"], BODY),
         "lost in transfer": (energy["transfer_loss"], PURPLE),
     }

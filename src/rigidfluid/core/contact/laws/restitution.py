@@ -48,13 +48,18 @@ class Restitution(ForceLaw):
             remedy = "Leave `restitution` and `restitution_stokes` out, or choose another law."
             found = f"a restitution for {law.name!r}, which has {kind}"
             raise SceneError("contact.law", found, "a law with an energy and without dampers", remedy)
+        if law.sign == "attracts":
+            remedy = "Leave `restitution` and `restitution_stokes` out, and give them to the law that repels."
+            raise SceneError("contact.law", f"a restitution for {law.name!r}", "a law that repels", remedy)
         if restitution < LEAST:
             raise SceneError("contact.restitution", restitution, f"from {LEAST} to 1", f"Set it to {LEAST} or more.")
         self.law = law
         self.restitution = restitution
         self.loss = loss
         self.loads = law.loads
+        self.sign = law.sign
         self.overlap = law.overlap
+        self.vanishes_at_range = law.vanishes_at_range
         self.film = law.film
 
     @property

@@ -24,8 +24,9 @@ def contacts_on_the_way(law: ForceLaw, contacts: Contacts, deepest: FloatArray) 
 
 def greatest_stiffness(law: ForceLaw, contacts: Contacts, deepest: FloatArray) -> FloatArray:
     """Greatest stiffness of each contact (m,) between its ``deepest`` gap (m,) [length] and the range, at least zero
-    [force/length]."""
+    [force/length]. Negative ones of a law that attracts count too: the gap then closes ever faster, at that rate."""
     stiffness = np.zeros(len(contacts))
     for there in contacts_on_the_way(law, contacts, deepest):
-        stiffness = np.maximum(stiffness, law.stiffness(there))
+        found = law.stiffness(there)
+        stiffness = np.maximum(stiffness, found if law.sign == "repels" else np.abs(found))
     return stiffness

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from rigidfluid.core.contact.laws.loads import closing_speed, impact_energy, pair_energy, stacked_weight
@@ -19,9 +21,13 @@ fast one's."""
 
 def work_to_stop(contacts: Contacts, loads: Loads, law_range: float) -> FloatArray:
     """Work of each contact in a head-on impact (m,): the energy that the film leaves + W (range - smallest_gap), W the
-    weight of a stack [energy]."""
+    weight of a stack, + the work of other laws that attract [energy]."""
     energy = impact_energy(contacts, loads) * share_left(contacts, loads, law_range, loads.smallest_gap)
-    return energy + stacked_weight(contacts, loads) * (law_range - loads.smallest_gap)
+    work = energy + stacked_weight(contacts, loads) * (law_range - loads.smallest_gap)
+    if loads.attraction is None:
+        return work
+    there = replace(contacts, gap=np.full(len(contacts), loads.smallest_gap))
+    return work + np.maximum(-loads.attraction.energy(there), 0.0)
 
 
 def share_left(contacts: Contacts, loads: Loads, law_range: float, smallest_gap: float) -> FloatArray:

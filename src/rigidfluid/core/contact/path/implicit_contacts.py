@@ -220,13 +220,13 @@ def _most_stored(encounter: Encounter[M], iterate: _Iterate[M]) -> float:
     law, start = encounter.law, encounter.start
     end = replace(start, gap=iterate.gap)
     just_in = [replace(start, gap=np.full(len(start), JUST_IN * begin)) for begin in law.ranges]
-    touching = [float(law.energy(contacts).max()) for contacts in just_in]
+    touching = [float(np.abs(law.energy(contacts)).max()) for contacts in just_in]
     return max(_stored(law, encounter.dynamics, start), _stored(law, iterate.dynamics, end), *touching)
 
 
 def _stored(law: ForceLaw, dynamics: BodyDynamics, contacts: Contacts) -> float:
-    """Kinetic energy of free bodies and potential energy of the contacts [energy]."""
-    twist, energy = dynamics.twist, float(law.energy(contacts).sum())
+    """Kinetic energy of free bodies and potential energy of the contacts, by its size where they attract [energy]."""
+    twist, energy = dynamics.twist, float(np.abs(law.energy(contacts)).sum())
     for velocity, inverse in (
         (twist.velocity, dynamics.inverse_mass),
         (twist.angular_velocity, dynamics.inverse_inertia),

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from rigidfluid.core.contact.laws.attraction import releasable_energy
 from rigidfluid.core.contact.pairs.proximity import detect, interacting
 from rigidfluid.core.contact.pairs.tracked_pairs import TrackedPairs
 from rigidfluid.core.contact.path.substep import relative_velocity
@@ -73,8 +74,8 @@ def foreseen(system: System, law: ForceLaw, dynamics: BodyDynamics, size: float,
 
 
 def _released(system: System, law: ForceLaw, dynamics: BodyDynamics, contacts: Contacts) -> float:
-    """Greatest speed of a surface point if a body got all energy that its contacts store [length/time]."""
-    energy, stored = law.energy(contacts), np.zeros(len(system.surfaces))
+    """Greatest speed of a surface point if a body got all energy that its contacts can release [length/time]."""
+    energy, stored = releasable_energy(law, contacts), np.zeros(len(system.surfaces))
     np.add.at(stored, contacts.body_a, energy)
     np.add.at(stored, contacts.body_b, energy)
     straight, turning = (np.linalg.eigvalsh(each)[:, -1] for each in (dynamics.inverse_mass, dynamics.inverse_inertia))

@@ -185,13 +185,13 @@ def _reached(
     """Greatest stiffness and damping coefficient (m,) that count under a further ``force`` (m,).
 
     A law may be far stiffer where bodies start than on their way apart. The substeps of parting bodies grow, but only
-    where the contact is so soft that the change costs next to no energy.
+    where the contact is so soft that the change costs next to no energy; those that attraction brings back do not part.
     """
-    parting = np.flatnonzero(approach.parting)
+    stored = law.energy(contacts)
+    parting = np.flatnonzero(approach.parting & (approach.energy + stored >= 0.0))
     rows = np.concatenate(
         [np.arange(len(contacts)), parting]
     )  # those that part a second time, with no energy of motion
-    stored = law.energy(contacts)
     energy = np.concatenate([approach.energy + stored, stored[parting]])
     both, alike = select(contacts, rows), Motion(motion.velocity[rows], motion.mass[rows])
     stiffness, damping = _greatest(law, both, alike, _deepest(law, both, energy, force[rows]))
