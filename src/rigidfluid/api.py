@@ -21,6 +21,7 @@ from rigidfluid.bodies.sphere import Sphere, SphereOptions
 from rigidfluid.core.case.load import load_scene, scene_from_dict
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.case.system import build_system
+from rigidfluid.core.contact.laws.repulsion import Repulsion, RepulsionOptions
 from rigidfluid.core.fluid.conditions import (
     BoundaryCondition,
     NoSlip,
@@ -128,6 +129,7 @@ from rigidfluid.forces.contact import ContactPointLaw, ContactPointOptions
 from rigidfluid.forces.lubrication import LubricationLaw, LubricationOptions
 from rigidfluid.forces.normal import NormalLaw, NormalOptions
 from rigidfluid.forces.spring_dashpot import SpringDashpotLaw, SpringDashpotOptions
+from rigidfluid.forces.van_der_waals import VanDerWaalsLaw, VanDerWaalsOptions
 from rigidfluid.hookspecs import hookimpl
 from rigidfluid.joints.ball import Ball, BallOptions
 from rigidfluid.joints.hinge import Hinge, HingeOptions
@@ -295,6 +297,8 @@ __all__ = [
     "RefineTable",
     "Registry",
     "RelativeStrokeTable",
+    "Repulsion",
+    "RepulsionOptions",
     "Response",
     "RigidBody",
     "RigidDisplacement",
@@ -343,6 +347,8 @@ __all__ = [
     "TimeTable",
     "Translation",
     "Twist",
+    "VanDerWaalsLaw",
+    "VanDerWaalsOptions",
     "Vector",
     "Vorticity",
     "VorticityOptions",

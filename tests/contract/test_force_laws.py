@@ -18,6 +18,7 @@ from rigidfluid.forces.contact import ContactPointLaw
 from rigidfluid.forces.lubrication import LubricationLaw, LubricationOptions
 from rigidfluid.forces.normal import NormalLaw
 from rigidfluid.forces.spring_dashpot import SpringDashpotLaw, SpringDashpotOptions
+from rigidfluid.forces.van_der_waals import VanDerWaalsLaw, VanDerWaalsOptions
 from rigidfluid.testing import ForceLawContract
 
 RANGE = 0.02
@@ -208,3 +209,9 @@ def test_a_wrong_declaration_fails(law: type[ForceLaw], key: str, wrong: object)
         except AssertionError:
             failed += 1
     assert failed
+
+
+class TestVanDerWaals(ForceLawContract):
+    @pytest.fixture
+    def law(self) -> ForceLaw:
+        return VanDerWaalsLaw(VanDerWaalsOptions(hamaker=1.0, cutoff=0.1 * RANGE), RANGE)

@@ -75,3 +75,11 @@ def test_built_in_parts_use_of_the_rest_what_it_offers(path: str) -> None:
     names = {name.name for node in taken if not (node.module or "").startswith(own) for name in node.names}
     assert names
     assert names - set(api.__all__) == set()
+
+
+def test_the_built_in_repulsions_derive_from_what_it_offers() -> None:
+    laws = import_module("rigidfluid.forces").rigidfluid_force_laws()
+    repulsions = [law for law in laws if issubclass(law, api.Repulsion)]
+    assert len(repulsions) == 4
+    bases = {base.__name__ for law in repulsions for base in (*law.__bases__, *law.Options.__bases__)}
+    assert bases - set(api.__all__) == set()
