@@ -54,8 +54,12 @@ class TestRestitution(ForceLawContract):
 
 class TestSpringDashpot(ForceLawContract):
     @pytest.fixture(
-        params=[{"restitution": 0.6, "friction": 0.4}, {"damping": 30.0, "friction": 0.1, "tangential_damping": 0.5}],
-        ids=["restitution", "damping"],
+        params=[
+            {"restitution": 0.6, "friction": 0.4},
+            {"damping": 30.0, "friction": 0.1, "tangential_damping": 0.5},
+            {"damping": 30.0, "friction": 0.1, "tangential_stiffness": 7e3},
+        ],
+        ids=["restitution", "damping", "sticking"],
     )
     def law(self, request: pytest.FixtureRequest) -> ForceLaw:
         return SpringDashpotLaw(SpringDashpotOptions(stiffness=1e4, **request.param), RANGE)

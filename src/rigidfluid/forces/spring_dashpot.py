@@ -18,7 +18,8 @@ class SpringDashpotOptions(PartOptions):
 
     ``stiffness``: of the spring, k [force/length]. ``restitution`` e or ``damping`` γ [force·time/length], not both,
     set the dissipation of the dashpot; without either there is none. ``friction``: the coefficient μ.
-    ``tangential_damping``: the ratio x of the dashpots along and across the surfaces.
+    ``tangential_damping``: the ratio x of the dashpots along and across the surfaces. ``tangential_stiffness``: of a
+    spring along the surfaces, k_t [force/length]; without it friction has no memory, and what rests on a slope creeps.
     """
 
     stiffness: float = Field(gt=0, description="Stiffness k of the spring [force/length]")
@@ -35,10 +36,18 @@ class SpringDashpotOptions(PartOptions):
         default=1.0, ge=0, description="Ratio x of the dashpot's coefficient along the surfaces to γ [1]"
     )
 
+    tangential_stiffness: float | None = Field(
+        default=None,
+        gt=0,
+        description="Stiffness k_t of a spring along the surfaces, which holds static friction [force/length]",
+    )
+
     @model_validator(mode="after")
-    def _one_dashpot(self) -> Self:
+    def _consistent(self) -> Self:
         if self.restitution is not None and self.damping is not None:
             raise ValueError("`restitution` or `damping`, not both")
+        if self.tangential_stiffness is not None and self.friction == 0.0:
+            raise ValueError("`tangential_stiffness` with `friction` above 0 alone")
         return self
 
 
@@ -50,14 +59,18 @@ class SpringDashpotLaw(ForceLaw):
     ends with e times its speed. Contact begins at range: the bodies wear a shell of half that thickness. F_n is not cut
     where it pulls, at the end of an impact: e would not be exact.
 
+    With ``tangential_stiffness`` k_t the force along the surfaces is -(k_t ξ + x γ v_t), at most μ |F_n|: ξ, the
+    displacement of the surfaces past each other, is shortened where they slip until that holds (Cundall & Strack,
+    Géotechnique 29 (1979) 47, doi:10.1680/geot.1979.29.1.47). Its energy is k_t ξ²/2.
+
     Notes
     -----
     Across the surfaces it is LAMMPS' ``pair_style granular`` with ``pair_coeff * * hooke k e damping coeff_restitution
     tangential linear_nohistory x μ``, or ``hooke k γ damping velocity`` with γ given, without ``limit_damping``, for
-    balls of radius r + range/2 and walls range/2 further in. Along the surfaces the formula is the same, and forces
-    act where LAMMPS lets them act between balls, in the middle of the overlap; but LAMMPS takes v_t at the surfaces of
-    the enlarged balls and not at that middle, which differs by ω δ/2, and gives a ball at a wall the arm of its whole
-    radius. https://docs.lammps.org/pair_granular.html
+    balls of radius r + range/2 and walls range/2 further in; with k_t given it is ``linear_history k_t x μ``. Along the
+    surfaces the formula is the same, and forces act where LAMMPS lets them act between balls, in the middle of the
+    overlap; but LAMMPS takes v_t at the surfaces of the enlarged balls and not at that middle, which differs by ω δ/2,
+    and gives a ball at a wall the arm of its whole radius. https://docs.lammps.org/pair_granular.html
     """
 
     name: ClassVar[str] = "spring-dashpot"
@@ -79,12 +92,42 @@ class SpringDashpotLaw(ForceLaw):
 
     def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
         """Dashpot and friction on ``body_a``, (m, d) [force]."""
+        coefficient, speed, sliding = self._dashpot(contacts, motion)
+        along = self.options.tangential_damping * coefficient
+        if self.sticking:
+            rubbing = along[:, None] * sliding
+        else:
+            rubbing = _limited(along, self._greatest_friction(contacts, coefficient * speed), sliding)
+        return np.asarray(-(coefficient * speed)[:, None] * contacts.normal - rubbing)
+
+    def tangential_stiffness(self, contacts: Contacts) -> FloatArray:
+        """k_t where the shells overlap, (m,) [force/length]."""
+        return np.where(self._overlap(contacts) > 0.0, self.options.tangential_stiffness or 0.0, 0.0)
+
+    def held_displacement(self, contacts: Contacts, motion: Motion, displacement: FloatArray) -> FloatArray:
+        """ξ with |k_t ξ + x γ v_t| ≤ μ |F_n|, the nearest along that force, (m, d) [length]."""
+        stiffness = self.tangential_stiffness(contacts)[:, None]
+        coefficient, speed, sliding = self._dashpot(contacts, motion)
+        damped = (self.options.tangential_damping * coefficient)[:, None] * sliding
+        held = _shortened(self._greatest_friction(contacts, coefficient * speed), stiffness * displacement + damped)
+        slipped = np.divide(held - damped, stiffness, out=np.zeros_like(displacement), where=stiffness > 0.0)
+        sticks = np.all(held == stiffness * displacement + damped, axis=1, keepdims=True) & (stiffness > 0.0)
+        return np.where(sticks, displacement, slipped)
+
+    @property
+    def sticking(self) -> bool:  # type: ignore[override]
+        """Tell whether there is a spring along the surfaces."""
+        return self.options.tangential_stiffness is not None
+
+    def _dashpot(self, contacts: Contacts, motion: Motion) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """γ (m,) [force·time/length], and the relative velocity along the normal (m,) and across it (m, d)."""
         coefficient = np.where(self._overlap(contacts) > 0.0, self._coefficient(motion.mass), 0.0)
         speed = np.sum(motion.velocity * contacts.normal, axis=1)
-        sliding = motion.velocity - speed[:, None] * contacts.normal
-        pressing = np.abs(self.options.stiffness * self._overlap(contacts) - coefficient * speed)
-        rubbing = _limited(self.options.tangential_damping * coefficient, self.options.friction * pressing, sliding)
-        return np.asarray(-(coefficient * speed)[:, None] * contacts.normal - rubbing)
+        return coefficient, speed, motion.velocity - speed[:, None] * contacts.normal
+
+    def _greatest_friction(self, contacts: Contacts, damped: FloatArray) -> FloatArray:
+        """μ |F_n| with the force ``damped`` (m,) of the dashpot, (m,) [force]."""
+        return self.options.friction * np.abs(self.options.stiffness * self._overlap(contacts) - damped)
 
     def _overlap(self, contacts: Contacts) -> FloatArray:
         return np.maximum(self.range - contacts.gap, 0.0)
@@ -95,6 +138,13 @@ class SpringDashpotLaw(ForceLaw):
             return np.full(len(mass), self.options.damping or 0.0)
         logarithm = np.log(self.options.restitution)
         return np.asarray(-2.0 * logarithm * np.sqrt(mass * self.options.stiffness / (np.pi**2 + logarithm**2)))
+
+
+def _shortened(most: FloatArray, force: FloatArray) -> FloatArray:
+    """Forces (m, d) shortened to ``most`` (m,) where they are longer."""
+    size = np.linalg.norm(force, axis=1)
+    part = np.divide(most, size, out=np.ones_like(size), where=size > most)
+    return np.asarray(part[:, None] * force)
 
 
 def _limited(coefficient: FloatArray, most: FloatArray, velocity: FloatArray) -> FloatArray:

@@ -67,6 +67,17 @@ def test_friction_is_limited_by_the_whole_normal_force(approach: float) -> None:
     np.testing.assert_allclose(push(rough, approach * NORMAL + 1e6 * ALONG), expected)
 
 
+def test_springs_along_the_surfaces_are_shortened_onto_the_cone() -> None:
+    sticking = law(damping=7.0, friction=0.3, tangential_damping=0.5, tangential_stiffness=2e3)
+    motion = Motion(2.0 * ALONG, np.array([1.0]))
+    most, damped = 0.3 * STIFFNESS * (RANGE - GAP), 0.5 * 7.0 * 2.0 * ALONG
+    np.testing.assert_array_equal(sticking.held_displacement(contact(GAP), motion, 0.01 * ALONG), 0.01 * ALONG)
+    for displacement in (0.1 * ALONG, -0.1 * ALONG):
+        held = sticking.held_displacement(contact(GAP), motion, displacement)
+        np.testing.assert_allclose(2e3 * held + damped, np.sign(displacement @ ALONG.T) * most * ALONG)
+    assert not sticking.held_displacement(contact(RANGE), motion, 0.01 * ALONG).any()
+
+
 @pytest.mark.parametrize(
     "keys",
     [
@@ -75,6 +86,8 @@ def test_friction_is_limited_by_the_whole_normal_force(approach: float) -> None:
         {"damping": -1.0},
         {"friction": -0.1},
         {"restitution": 0.5, "damping": 1.0},
+        {"tangential_stiffness": 0.0, "friction": 0.5},
+        {"tangential_stiffness": 1.0},
     ],
 )
 def test_options_refuse_what_has_no_meaning(keys: dict[str, float]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rigidfluid.core.contact.path.stretched import stretched
 from rigidfluid.core.contact.path.substep import relative_motion
 from rigidfluid.core.coupling.scheme import Scheme
 from rigidfluid.core.geometry.arrays import FloatArray
@@ -12,12 +13,15 @@ from rigidfluid.core.model.system import System
 
 
 def contact_forces(system: System, scheme: Scheme, state: State, time: float) -> FloatArray:
-    """Force of each contact of a state on its first body, by all laws and their dampers (m, d), zero at the start
-    [force]."""
+    """Force of each contact of a state on its first body, by all laws, their dampers and springs along surfaces (m, d),
+    zero at the start [force]."""
     contacts, law = state.contacts, system.law
     if law is None or len(contacts) == 0 or state.count == 0:
         return np.zeros((len(contacts), system.dimension))
     if not law.dissipative:
         return law.force(contacts)
     motion = relative_motion(contacts, scheme.bodies_now(state, time), system.wall_velocity)
-    return np.asarray(law.force(contacts) + law.damping(contacts, motion))
+    force = np.asarray(law.force(contacts) + law.damping(contacts, motion))
+    if law.sticking:
+        force += stretched(law, contacts, motion, state.pose, state.springs, 0.0).force
+    return force

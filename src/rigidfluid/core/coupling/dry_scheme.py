@@ -36,7 +36,7 @@ class DryScheme:
             path, dynamics = implicit_free(system, system.law, dynamics, size)
         else:
             sight = look_ahead(system, dynamics, size)
-            path = SubstepPath(system, system.law, dynamics, size).advance(sight)
+            path = SubstepPath(system, system.law, dynamics, size, state.springs).advance(sight)
         by_joints = dynamics.link_work
         dissipated, actuator_work = path.dissipated + by_joints.damped, path.actuator_work + by_joints.drive_work
         return replace(path, dissipated=dissipated, actuator_work=actuator_work, link=by_joints.load(size))

@@ -78,7 +78,7 @@ class FluidScheme(ABC):
             path = implicit_coupled(system, system.law, dynamics, near, size)
         else:
             sight = system.detection.look_ahead(ExtrapolatedContacts(near, state.pose), dynamics, size)
-            path = SubstepPath(system, system.law, dynamics, size).advance(sight)
+            path = SubstepPath(system, system.law, dynamics, size, state.springs).advance(sight)
             path = replace(path, friction=dynamics.friction_loss)
         return replace(self._with_friction(path), coupling=coupling)
 

@@ -49,7 +49,8 @@ class NavierStokesScheme(FluidScheme):
         if law is None or size <= RESOLVED * SubstepPath(system, law, bodies, size).planned(near, size).substep:
             return np.ones_like(flat(state.motions.contact), dtype=bool)
         force = np.zeros_like(state.motions.contact.force)
-        np.add.at(force, system.motions.carrier, contact_load(system, law, state.contacts, bodies).wrench.force)
+        load = contact_load(system, law, state.contacts, bodies, state.springs)
+        np.add.at(force, system.motions.carrier, load.wrench.force)
         change = np.linalg.norm(force - state.motions.contact.force, axis=1)
         slow = change < SLOW * np.linalg.norm(force, axis=1)
         return np.broadcast_to(slow[:, None], flat(state.motions.contact).shape)

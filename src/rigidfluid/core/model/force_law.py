@@ -44,6 +44,9 @@ class ForceLaw(Part):
     """Tell whether it has an energy; else force, energy and stiffness are zero."""
     dissipative: bool = False
     """Tell whether it has damping; else damping is zero."""
+    sticking: bool = False
+    """Tell whether it has springs along the surfaces, which remember how far these have moved past each other; else
+    their stiffness is zero."""
     sign: Sign = "repels"
     """Sign of the energy's force between contact and range; "either" for one that changes or is zero in part of it."""
     overlap: Overlap = "repels"
@@ -90,3 +93,14 @@ class ForceLaw(Part):
     def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
         """Further force on ``body_a`` that the relative velocity gives, (m, d), of power ≤ 0 [force]."""
         return np.zeros_like(contacts.normal)
+
+    @gives(rows(lambda _, contacts: contacts.gap.shape, shorter=True))
+    def tangential_stiffness(self, contacts: Contacts) -> FloatArray:
+        """Stiffness k of the springs along the surfaces, (m,) [force/length]."""
+        return np.zeros_like(contacts.gap)
+
+    @gives(rows(lambda _, contacts, motion, displacement: displacement.shape, shorter=True))
+    def held_displacement(self, contacts: Contacts, motion: Motion, displacement: FloatArray) -> FloatArray:
+        """Displacement ξ that friction holds of a ``displacement`` of these springs, (m, d) each and across the normals
+        [length]: -k ξ and damping along the surfaces together are no more than friction gives."""
+        return np.zeros_like(displacement)

@@ -75,6 +75,7 @@ class SumOfLaws(ForceLaw):
         self.sign = _sign_of(with_energy)
         self.overlap = _overlap_of(with_energy)
         self.vanishes_at_range = all(law.vanishes_at_range for law in with_energy)
+        self.sticking = any(law.sticking for law in laws)
 
     @property
     def ranges(self) -> tuple[float, ...]:
@@ -100,6 +101,20 @@ class SumOfLaws(ForceLaw):
             return law.damping(some, Motion(motion.velocity[chosen], motion.mass[chosen]))
 
         return self._sum(contacts, np.zeros_like(contacts.normal), damping)
+
+    def tangential_stiffness(self, contacts: Contacts) -> FloatArray:
+        """Σ k of the springs along the surfaces, (m,) [force/length]: one law at most has some in a contact."""
+        return self._sum(contacts, np.zeros_like(contacts.gap), lambda law, some, _: law.tangential_stiffness(some))
+
+    def held_displacement(self, contacts: Contacts, motion: Motion, displacement: FloatArray) -> FloatArray:
+        """Displacement of these springs that friction holds, (m, d) [length]."""
+
+        def held(law: ForceLaw, some: Contacts, chosen: BoolArray) -> FloatArray:
+            return law.held_displacement(
+                some, Motion(motion.velocity[chosen], motion.mass[chosen]), displacement[chosen]
+            )
+
+        return self._sum(contacts, np.zeros_like(displacement), held)
 
     def _sum(
         self, contacts: Contacts, total: FloatArray, asked: Callable[[ForceLaw, Contacts, BoolArray], FloatArray]

@@ -10,6 +10,7 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.reduced_model import Coupling
+from rigidfluid.core.model.tangential_springs import TangentialSprings
 from rigidfluid.core.model.types import Contacts, FluidState, Mesh, Pose, Twist, Wrench
 
 
@@ -125,6 +126,7 @@ class State:
     ``prescription``: what was prescribed since the start in the scene's place, None if nothing was. ``applied``: wrench
     from outside on the n bodies from now on, zero on those that are not free; None if nothing was applied yet.
     ``jumped``: the latest tick at which a prescribed velocity was changed by a jump, None before the first.
+    ``springs``: those along the surfaces of contacts, None where there are none.
     """
 
     tick: int
@@ -150,6 +152,7 @@ class State:
     prescription: Prescription | None = None
     applied: Wrench | None = None
     jumped: int | None = None
+    springs: TangentialSprings | None = None
 
     @property
     def is_on_new_mesh(self) -> bool:

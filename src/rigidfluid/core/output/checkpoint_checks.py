@@ -47,6 +47,10 @@ _STATE: Shapes = {
         **dict.fromkeys(("body_a", "body_b", "gap", "radius_a", "radius_b", "at_wall", "effective_radius"), "m"),
         **dict.fromkeys(("point_a", "point_b", "normal"), "md"),
     },
+    "springs": {
+        **dict.fromkeys(("body_a", "body_b", "stiffness"), "l"),
+        **dict.fromkeys(("arm_a", "arm_b", "normal", "displacement"), "ld"),
+    },
     **{"hydrodynamic_wrench": _wrench("n"), "contact_wrench": _wrench("n"), "applied": _wrench("n")},
     "motions": {
         **{"pose": _pose("N"), "twist": _twist("N")},
@@ -149,6 +153,9 @@ def _require_indices(state: State) -> None:
     for path, mesh in (("state/reference/mesh", state.reference.mesh), ("state/mesh", state.mesh)):
         _require_vertices(path, mesh)
     _require("state/contacts/body_a", contacts.body_a, contacts.body_a < n, f"numbers below {n}, that of the bodies")
+    if state.springs is not None:
+        body = state.springs.body_a
+        _require("state/springs/body_a", body, body < n, f"numbers below {n}, that of the bodies")
     if state.coupling is not None:
         velocities, count = state.coupling.model.velocities, state.link.wrench.size
         _require("state/coupling/model/velocities", velocities, velocities < count, f"numbers below {count}")

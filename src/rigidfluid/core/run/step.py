@@ -22,6 +22,7 @@ from rigidfluid.core.model.energy import Ledger, Power, Work
 from rigidfluid.core.model.part_results import refuse_lost_pose
 from rigidfluid.core.model.state import LinkLoad, MotionState, Past, State
 from rigidfluid.core.model.system import System
+from rigidfluid.core.model.tangential_springs import spring_energy
 from rigidfluid.core.model.types import Advance, Contacts, Mesh, Pose, Step, Twist, Wrench
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.stopwatch import Stopwatch
@@ -81,6 +82,7 @@ def attempt(tools: Tools, state: State, level: int, path: BodyStep, provisional:
         fluid=advance.fluid,
         coupling=None,
         contacts=place.contacts,
+        springs=path.springs,
         gaps=place.gaps,
         hydrodynamic_wrench=advance.hydrodynamic_wrench,
         contact_wrench=_mean(path.impulse, end.size),
@@ -125,7 +127,7 @@ def _ledger_after(system: System, state: State, path: BodyStep, solved: _Solved)
         power,
         _work(system, state, path, actuator_work(system, state, after, step.kinematics)),
         advance.kinetic_energy + bodies_energy(system, after.pose, after.twist),
-        stored_energy(system, contacts, path.motions.pose, step.time),
+        stored_energy(system, contacts, path.motions.pose, step.time) + spring_energy(path.springs),
     )
 
 

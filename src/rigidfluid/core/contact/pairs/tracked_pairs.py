@@ -6,7 +6,8 @@ import numpy as np
 
 from rigidfluid.core.contact.pairs.extrapolated_contacts import ExtrapolatedContacts
 from rigidfluid.core.contact.pairs.proximity import detect, interacting, travel
-from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.contact.pairs.same_contacts import PointPairs, all_different, nearest_contacts
+from rigidfluid.core.geometry.arrays import IntArray
 from rigidfluid.core.model.contacts import joined, select
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.system import System
@@ -15,9 +16,6 @@ from rigidfluid.errors import StepRejected
 
 SAME_PLACE = 4.0
 """Largest distance of a contact's points from those carried along, over the way, at which it is the same contact."""
-
-SLIDING = 0.01
-"""Weight of the distance of the farther points, relative to that of the nearer ones."""
 
 
 class TrackedPairs:
@@ -40,7 +38,7 @@ class TrackedPairs:
         found = self._detected(pose, (self._reach + 2.0 * moved) * (1.0 + 1e-9))
         numbers = self._numbers(found)
         self._refuse_others(found, np.isin(numbers, self._pairs, invert=True))
-        if _all_different(self._pairs) and _all_different(numbers):
+        if all_different(self._pairs) and all_different(numbers):
             return select(found, np.searchsorted(numbers, self._pairs))
         expected = ExtrapolatedContacts(self.start, self._pose).extrapolate(pose)
         return self._matched(found, numbers, expected, SAME_PLACE * moved)
@@ -48,21 +46,18 @@ class TrackedPairs:
     def missed(self, law: ForceLaw, pose: Pose) -> float:
         """Energy of the contacts at ``pose`` less that of those tracked there: that of contacts that came, or went,
         untracked."""
-        if _all_different(self._pairs) and not self._system.arms.any():
+        if all_different(self._pairs) and not self._system.arms.any():
             return 0.0  # two balls have one contact, and others are refused
         return float(law.energy(self._detected(pose, law.range)).sum() - law.energy(self.extrapolate(pose)).sum())
 
     def _matched(self, found: Contacts, numbers: IntArray, carried: Contacts, far: float) -> Contacts:
         """Contacts ``found`` at the places of those ``carried`` along, one for each; the carried one where none is as
         near as ``far``."""
-        from scipy.optimize import linear_sum_assignment
-
         both, row = joined([found, carried]), np.arange(len(carried)) + len(found)
         for pair in np.unique(self._pairs):
             there, here = np.flatnonzero(numbers == pair), np.flatnonzero(self._pairs == pair)
-            away = _apart(carried, here, found, there)
-            mine, theirs = linear_sum_assignment(away)
-            near = away[mine, theirs] <= far
+            mine, theirs, away = nearest_contacts(_points(carried, here), _points(found, there))
+            near = away <= far
             row[here[mine[near]]] = there[theirs[near]]
         return select(both, row)
 
@@ -86,13 +81,5 @@ class TrackedPairs:
             )
 
 
-def _all_different(numbers: IntArray) -> bool:
-    return bool(np.all(numbers[1:] != numbers[:-1]))
-
-
-def _apart(first: Contacts, rows: IntArray, second: Contacts, others: IntArray) -> FloatArray:
-    """Distance of the nearer points and a little of that of the others, of each of some contacts to each of others
-    [length]: a corner goes with its body, while the point that faces it slides."""
-    points = (first.point_a, second.point_a), (first.point_b, second.point_b)
-    a, b = (np.linalg.norm(one[rows][:, None] - other[others][None], axis=2) for one, other in points)
-    return np.asarray(np.minimum(a, b) + SLIDING * np.maximum(a, b))
+def _points(contacts: Contacts, rows: IntArray) -> PointPairs:
+    return PointPairs(contacts.point_a[rows], contacts.point_b[rows])

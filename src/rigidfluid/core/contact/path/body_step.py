@@ -11,6 +11,7 @@ from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.reduced_model import Coupling
 from rigidfluid.core.model.state import LinkLoad, MotionState, State, unloaded
 from rigidfluid.core.model.system import System
+from rigidfluid.core.model.tangential_springs import TangentialSprings
 from rigidfluid.core.model.types import Pose, Twist, Wrench
 
 
@@ -26,6 +27,8 @@ class BodyStep:
     In a fluid ``friction`` is the energy that drag takes in substeps, unresolved by the fluid solves, and ``coupling``
     the one with which the bodies were followed, None where nothing can touch. Without inertia of the fluid that energy
     is known for certain: it is ``drag_loss`` then, and ``friction`` zero.
+
+    ``springs``: those along the surfaces of contacts at the end, None where there are none.
     """
 
     pose: Pose
@@ -39,6 +42,7 @@ class BodyStep:
     friction: float = 0.0
     coupling: Coupling | None = None
     drag_loss: float = 0.0
+    springs: TangentialSprings | None = None
 
 
 def arrived(dynamics: BodyDynamics, impulse: Wrench, dissipated: float, actuator_work: float, count: int) -> BodyStep:

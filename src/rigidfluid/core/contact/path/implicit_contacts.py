@@ -10,7 +10,7 @@ import numpy as np
 
 from rigidfluid.core.contact.path.contact_newton import MOST_DENSE, Problem, contact_forces
 from rigidfluid.core.contact.path.delassus import delassus
-from rigidfluid.core.contact.path.substep import relative_motion, relative_velocity
+from rigidfluid.core.contact.path.substep import JUST_IN, relative_motion, relative_velocity
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.wall import WallVelocities
 from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing
@@ -34,9 +34,6 @@ TOLERANCE = 1e-10
 KEPT = 1e-5
 """Relative error of the energy above which a step is rejected, as bodies turn too far in it for one force in each
 contact."""
-
-JUST_IN = 0.999
-"""Gap over the range of a contact that is just in range."""
 
 _SCALES = 0.5, 2.0
 _STILL = 1e-6

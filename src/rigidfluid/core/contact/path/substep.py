@@ -21,6 +21,9 @@ from rigidfluid.core.model.types import Contacts, Motion, Pose, Twist
 RESOLUTION = 0.1
 """Substep times the highest contact frequency: some sixty substeps in a period."""
 
+JUST_IN = 0.999
+"""Gap over the range of a contact that is just in range."""
+
 FADED = 8.0
 """Bound of the frequency of parting balls, over the highest that is still to come."""
 
@@ -163,7 +166,8 @@ def _creep(contacts: Contacts, dynamics: BodyDynamics, reach: Reach, size: float
 
 
 def _resolved(law: ForceLaw, contacts: Contacts, dynamics: BodyDynamics, approach: _Approach, push: _Push) -> float:
-    """Substep 0.1/ω with ω² ≤ Σ k/m over all contacts of either body, k the greatest stiffness within reach [time].
+    """Substep 0.1/ω with ω² ≤ Σ k/m over all contacts of either body, k the greatest stiffness within reach [time], and
+    Σ k/m of springs along the surfaces besides.
 
     Without inertia of the fluid it is a tenth of the contacts' relaxation time, if that is longer: h k φ₁(λh) h/m ≤ 0.1
     then, with decay rates λ, and Verlet's method with exact decay is stable up to 2.
@@ -171,12 +175,28 @@ def _resolved(law: ForceLaw, contacts: Contacts, dynamics: BodyDynamics, approac
     motion = relative_motion(contacts, dynamics)
     stiffness, damping = _reached(law, contacts, motion, approach, push.force)
     inverse = approach.inverse
-    swing = np.sqrt(_highest_sum(stiffness, contacts, inverse))
-    if push.rates is not None:
+    square = _highest_sum(stiffness, contacts, inverse)
+    if law.sticking:
+        square += _tangential_sum(law, contacts, dynamics, inverse)
+    swing = np.sqrt(square)
+    if push.rates is not None and not law.sticking:
         swing = min(swing, float((push.rates @ stiffness).max()))
     rate = max(swing, _highest_sum(damping, contacts, inverse))
     refuse_no_number("contacts", "stiffness or damping", rate, "contact.law")
     return RESOLUTION / rate if rate > 0 else np.inf
+
+
+def _tangential_sum(law: ForceLaw, contacts: Contacts, dynamics: BodyDynamics, inverse: FloatArray) -> float:
+    """Bound of Σ k/m of springs along the surfaces of all contacts of either body, which turn the bodies too
+    [1/time²]."""
+    count, turning = len(dynamics.pose.position), np.zeros_like(inverse)
+    lightest = np.linalg.eigvalsh(dynamics.inverse_inertia)[:, -1]
+    for side, body in enumerate([contacts.body_a, contacts.body_b]):
+        on_body = body < count
+        arm = middle(contacts)[on_body] - dynamics.pose.position[body[on_body]]
+        turning[on_body, side] = np.sum(arm**2, axis=1) * lightest[body[on_body]]
+    touching = replace(contacts, gap=np.minimum(contacts.gap, JUST_IN * law.range))
+    return _highest_sum(law.tangential_stiffness(touching), contacts, inverse + turning)
 
 
 def _reached(

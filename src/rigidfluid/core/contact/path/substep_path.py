@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil
 
 import numpy as np
@@ -17,6 +17,7 @@ from rigidfluid.core.model.detection import Sight
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.system import System
+from rigidfluid.core.model.tangential_springs import TangentialSprings
 from rigidfluid.core.model.types import Contacts
 from rigidfluid.errors import StepRejected
 
@@ -55,12 +56,13 @@ def spring_parts(system: System, size: float) -> int:
 @dataclass(frozen=True)
 class SubstepPath:
     """Path of bodies through one step of this ``size`` [time], on which a ``law`` kicks them; their ``dynamics``
-    changes in place."""
+    changes in place. ``springs``: those along surfaces at its start, None without any."""
 
     system: System
     law: ForceLaw
     dynamics: BodyDynamics
     size: float
+    springs: TangentialSprings | None = None
 
     def advance(self, sight: Sight) -> BodyStep:
         """Advance by velocity Verlet: half a kick, a drift, half a kick; the second is that of the new pose.
@@ -71,7 +73,8 @@ class SubstepPath:
         system, dynamics, size = self.system, self.dynamics, self.size
         contacts = sight.contacts_at(dynamics.pose)
         impulse, dissipated, actuator_work, count, left = nothing(dynamics.pose), 0.0, 0.0, 0, size
-        load = contact_load(system, self.law, contacts, dynamics)
+        load = contact_load(system, self.law, contacts, dynamics, self.springs)
+        dissipated += load.slipped
         planned, free_flight, substep, longest = 0.0, 0.0, 0.0, size / spring_parts(system, size)
         while left > 0.0:
             if planned <= 0.0 or contacts.gap.min(initial=np.inf) > self.law.range:
@@ -88,18 +91,19 @@ class SubstepPath:
             dynamics.drift(part)
             contacts = sight.contacts_at(dynamics.pose)
             _refuse_overlaps(system, contacts)
-            before, load = load, contact_load(system, self.law, contacts, dynamics)
+            before, load = load, contact_load(system, self.law, contacts, dynamics, load.springs, part)
             dynamics.kick(load.wrench, 0.5 * part)
             load = load._replace(loss=damping_loss(system, contacts, dynamics, load.damping))
             impulse = add_wrench(add_wrench(impulse, before.wrench, 0.5 * part), load.wrench, 0.5 * part)
-            dissipated += 0.5 * part * (before.loss + load.loss)
+            dissipated += 0.5 * part * (before.loss + load.loss) + load.slipped
             actuator_work += 0.5 * part * (before.actuator_work + load.actuator_work)
             count, planned = count + 1, planned - part
             free_flight = free_flight - part if free_flight - part > ROUNDING * size else 0.0
             left = left - part if left - part > ROUNDING * size else 0.0
             if count == MOST_SUBSTEPS and left > 0.0:
                 raise _too_stiff(system, contacts, part)
-        return arrived(dynamics, impulse, dissipated, actuator_work, count)
+        path = arrived(dynamics, impulse, dissipated, actuator_work, count)
+        return path if load.springs is None else replace(path, springs=load.springs)
 
     def _too_fast(self, span: float) -> StepRejected:
         fastest = int(np.argmax(fastest_speeds(self.system, self.dynamics, self.size)))

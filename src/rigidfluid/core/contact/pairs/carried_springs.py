@@ -1,0 +1,90 @@
+"""Tangential springs of one pose in the contacts of another: found again, and turned with the normals."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rigidfluid.core.contact.pairs.same_contacts import PointPairs, all_different, nearest_contacts
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.mechanics.rigid import rotation_matrices
+from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.tangential_springs import TangentialSprings
+from rigidfluid.core.model.types import Contacts, Pose
+
+_OPPOSITE = 1e-12
+"""Least 1 + cosine of the angle between two normals at which their common plane is known."""
+
+
+def carried_displacement(springs: TangentialSprings | None, contacts: Contacts, pose: Pose) -> FloatArray:
+    """Displacements of ``springs`` in the ``contacts`` of bodies at ``pose``, (m, d), zero where none is [length]."""
+    carried = np.zeros_like(contacts.normal)
+    if springs is not None and len(contacts):
+        mine, theirs = _matched(springs, contacts, pose)
+        kept = springs.select(mine)
+        carried[theirs] = transported(kept.displacement, kept.normal, contacts.normal[theirs])
+    return carried
+
+
+def springs_at(contacts: Contacts, displacement: FloatArray, stiffness: FloatArray, pose: Pose) -> TangentialSprings:
+    """Springs of this ``displacement`` (m, d) [length] and ``stiffness`` (m,) [force/length] in the ``contacts`` of
+    bodies at ``pose``, without those that are not there or relaxed."""
+    chosen = np.flatnonzero((stiffness > 0.0) & displacement.any(axis=1))
+    near, turned_back = select(contacts, chosen), np.swapaxes(rotation_matrices(pose.orientation), -1, -2)
+    return TangentialSprings(
+        near.body_a,
+        near.body_b,
+        _moved(near.body_a, near.point_a, -pose.position, np.zeros_like(pose.position), turned_back),
+        _moved(near.body_b, near.point_b, -pose.position, np.zeros_like(pose.position), turned_back),
+        near.normal,
+        displacement[chosen],
+        stiffness[chosen],
+    )
+
+
+def transported(displacement: FloatArray, before: FloatArray, after: FloatArray) -> FloatArray:
+    """Parallel transport of displacements (s, d) from the plane across the normals ``before`` (s, d) to that across
+    the normals ``after`` (s, d), by the smallest rotation that takes one normal to the other:
+
+        ξ - (n + n') (n'·ξ)/(1 + n·n'),  ξ where n' = -n.
+    """
+    closeness = 1.0 + np.sum(before * after, axis=1)
+    along = np.sum(displacement * after, axis=1)
+    part = np.divide(along, closeness, out=np.zeros_like(along), where=closeness > _OPPOSITE)
+    turned = displacement - part[:, None] * (before + after)
+    return np.asarray(turned - np.sum(turned * after, axis=1)[:, None] * after)
+
+
+def _matched(springs: TangentialSprings, contacts: Contacts, pose: Pose) -> tuple[IntArray, IntArray]:
+    """Rows of springs and of the contacts that they go on in: those of the same pair, of several the nearest to the
+    points that the bodies carry along."""
+    base = int(max(springs.body_b.max(), contacts.body_b.max())) + 1
+    before, now = (each.body_a * base + each.body_b for each in (springs, contacts))
+    if all_different(before) and all_different(now):
+        _, mine, theirs = np.intersect1d(before, now, assume_unique=True, return_indices=True)
+        return mine, theirs
+    points = _carried_points(springs, pose)
+    mine, theirs = [], []
+    for pair in np.intersect1d(before, now):
+        rows, others = np.flatnonzero(before == pair), np.flatnonzero(now == pair)
+        there = PointPairs(contacts.point_a[others], contacts.point_b[others])
+        own, found, _ = nearest_contacts(PointPairs(points.a[rows], points.b[rows]), there)
+        mine.append(rows[own])
+        theirs.append(others[found])
+    none = [np.zeros(0, dtype=np.int64)]
+    return np.concatenate(none + mine), np.concatenate(none + theirs)
+
+
+def _carried_points(springs: TangentialSprings, pose: Pose) -> PointPairs:
+    rotation, still = rotation_matrices(pose.orientation), np.zeros_like(pose.position)
+    return PointPairs(
+        _moved(springs.body_a, springs.arm_a, still, pose.position, rotation),
+        _moved(springs.body_b, springs.arm_b, still, pose.position, rotation),
+    )
+
+
+def _moved(body: IntArray, point: FloatArray, before: FloatArray, after: FloatArray, turn: FloatArray) -> FloatArray:
+    """R (x + x₀) + x₁ of points x (s, d) on bodies, with x₀, x₁ (n, d) and R (n, d, d) of each; those on walls stay."""
+    moved, on_body = point.copy(), body < len(before)
+    index = body[on_body]
+    moved[on_body] = np.einsum("nij,nj->ni", turn[index], point[on_body] + before[index]) + after[index]
+    return moved

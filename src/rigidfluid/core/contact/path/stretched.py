@@ -1,0 +1,46 @@
+"""Springs along the surfaces of contacts, as these move past each other: stretched, and shortened where they slip."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rigidfluid.core.contact.pairs.carried_springs import carried_displacement, springs_at
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.tangential_springs import TangentialSprings, spring_energy
+from rigidfluid.core.model.types import Contacts, Motion, Pose
+
+
+class Stretched(NamedTuple):
+    """Forces -k ξ of springs along the surfaces on ``body_a`` (m, d) [force], the ``springs`` themselves, None where
+    all are relaxed, and the energy ``lost`` since they were as before, by slip [energy]."""
+
+    force: FloatArray
+    springs: TangentialSprings | None
+    lost: float
+
+
+def stretched(
+    law: ForceLaw, contacts: Contacts, motion: Motion, pose: Pose, before: TangentialSprings | None, time: float
+) -> Stretched:
+    """Springs of the ``contacts`` of bodies at ``pose`` after a ``motion`` that has lasted for ``time``, from those
+    ``before``.
+
+    ξ' = ξ + v_t Δt, shortened as far as friction slips. The mean of both forces loses k (ξ + ξ')/2·v_t Δt less the
+    change of the energy k ξ²/2: nothing where the surfaces stick.
+    """
+    carried = carried_displacement(before, contacts, pose)
+    way = time * across(motion.velocity, contacts)
+    stiffness = law.tangential_stiffness(contacts)
+    displacement = law.held_displacement(contacts, motion, carried + way)
+    springs = springs_at(contacts, displacement, stiffness, pose)
+    work = float(np.sum(stiffness[:, None] * 0.5 * (carried + displacement) * way))
+    lost = work + spring_energy(before) - spring_energy(springs)
+    return Stretched(-stiffness[:, None] * displacement, springs if len(springs) else None, lost)
+
+
+def across(vector: FloatArray, contacts: Contacts) -> FloatArray:
+    """Part of vectors (m, d) along the surfaces."""
+    return np.asarray(vector - np.sum(vector * contacts.normal, axis=1)[:, None] * contacts.normal)
