@@ -34,6 +34,7 @@ SUBJECTS = {
         "contacts_in_fluid": "Stiff contacts in a fluid: how much energy is created or lost",
         "stokes_contacts": "Contacts in Stokes flow: approach and rest compared with theory",
         "restitution": "Impacts that lose energy: rebound compared with the formula for Stokes numbers",
+        "steel_rebound": "A steel sphere bounces in oil: height and time compared with Gondret et al. (2002)",
         "resistances": "Spheres in narrow gaps: force compared with the exact series",
         "explicit_coupling": "Light bodies, contacts and new meshes: one system compared with explicit coupling",
         "stability": "Extreme contacts and densities: which runs succeed, and which fail",
