@@ -22,9 +22,10 @@ from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Twist
 from rigidfluid.core.nested.placing import initial_pose, initial_twist
-from rigidfluid.core.setup.contact_laws import check_sticking, interactions_of
+from rigidfluid.core.setup.contact_laws import interactions_of
 from rigidfluid.core.setup.geometry_checks import check_geometry
 from rigidfluid.core.setup.impact import creeping_resistances
+from rigidfluid.core.setup.interaction_checks import check_interactions
 from rigidfluid.core.setup.joints import build_joints, joined_bodies
 from rigidfluid.core.setup.loads import build_loads
 from rigidfluid.core.setup.masses import Masses, masses_of
@@ -52,7 +53,7 @@ def assemble(model: Model) -> System:
     motions = motions.starting_with(joints.fitting(motions.pose, motions.twist, 0.0))
     loads = build_loads(model, masses, motions, joints)
     interactions = interactions_of(model.named_laws, model.surfaces, loads)
-    check_sticking(interactions, model.stepping)
+    check_interactions(interactions, model.stepping)
     chosen, why = model.detection
     detector, law = chosen.part(chosen.options, model.shapes, model.walls), acting_together(interactions)
     backend = model.fluid.backend

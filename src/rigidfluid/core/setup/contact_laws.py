@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from itertools import combinations
 from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
@@ -22,7 +21,7 @@ from rigidfluid.core.setup.checked import AnyRow, Positive, checked
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
-    from rigidfluid.core.setup.model import ContactStepping, Model
+    from rigidfluid.core.setup.model import Model
 
 SMALLEST_GAP = 0.25
 """The smallest gap wanted over the range of the law, if none is given."""
@@ -158,26 +157,6 @@ def check_laws(model: Model) -> None:
             raise SceneError(f"{law.field}.roughness", law.roughness, allowed, "Shorten it, or widen the range.")
         _check_names(model, law)
         _check_shapes(model, law)
-
-
-def check_sticking(interactions: Sequence[Interaction], stepping: ContactStepping) -> None:
-    """Refuse, with SceneError, two laws with springs along the surfaces in one contact, whose friction would hold the
-    same displacement, and such a law in implicit steps."""
-    sticking = [interaction for interaction in interactions if interaction.law.sticking]
-    for one, other in combinations(sticking, 2):
-        if _may_meet(one, other):
-            found, allowed = f"a spring along surfaces that {one.field} has one along too", "one such law in a contact"
-            remedy = "Keep them to different contacts by `between` or `names`."
-            raise SceneError(f"{other.field}.law", found, allowed, remedy)
-    if sticking and stepping.implicit:
-        found, allowed = "'implicit' with springs along the surfaces", "'substeps'"
-        raise SceneError("contact.stepping", found, allowed, "Leave it out, or remove `tangential_stiffness`.")
-
-
-def _may_meet(one: Interaction, other: Interaction) -> bool:
-    """Tell whether there may be contacts in which both act."""
-    alike = one.between == other.between or "all" in (one.between, other.between)
-    return alike and len({*one.surfaces, *other.surfaces}) <= 2
 
 
 def _check_names(model: Model, law: ContactLaw) -> None:
