@@ -43,13 +43,13 @@ def rebound_findings(design: DesignContacts, film: Film, mesh: MeshTable) -> Ite
     stokes = np.where(struck, design.speed * stokes_number(design.contacts, film, system.loads), np.inf)
     curved = with_effective_radii(design.contacts, system.bodies, system.walls, system.pose).effective_radius
     resolved = resolved_gap(mesh, curved)  # NaN for facets, whose film is not known
-    back = np.where(np.isnan(resolved), 1.0, _given_back(design, film, stokes))
+    back = np.where(np.isnan(resolved), 1.0, given_back(design, film, stokes))
     for row in design.worst(-stokes):
         if struck[row]:
             yield _finding(design, film, row, _Rebound(float(stokes[row]), float(resolved[row]), float(back[row])))
 
 
-def _given_back(design: DesignContacts, film: Film, stokes: FloatArray) -> FloatArray:
+def given_back(design: DesignContacts, film: Film, stokes: FloatArray) -> FloatArray:
     """Speed at which a body leaves the law's range, over that of its impact (m,), if the resolved film takes its share
     alone [1]."""
     mass = np.divide(1.0, design.inverse_mass, out=np.ones_like(stokes), where=design.inverse_mass > 0.0)

@@ -20,6 +20,7 @@ from rigidfluid.checks.joints import joint_findings
 from rigidfluid.checks.mechanisms import mechanism_findings
 from rigidfluid.checks.memory import memory_findings
 from rigidfluid.checks.overridden import overridden_findings
+from rigidfluid.checks.pair_rows import PairRow, pair_rows
 from rigidfluid.checks.range_checks import parallel_wall_findings, range_findings, start_findings
 from rigidfluid.checks.rebound import rebound_findings
 from rigidfluid.checks.resolution import resolution_findings
@@ -63,12 +64,14 @@ class BodyRow:
 
 @dataclass(frozen=True)
 class Report:
-    """Answers of a check: the domain, features switched on and off, bodies, and findings, the gravest first."""
+    """Answers of a check: the domain, features switched on and off, bodies, kinds of pairs, and findings, the gravest
+    first."""
 
     scene: str
     domain: DomainRow
     features: tuple[Feature, ...]
     bodies: tuple[BodyRow, ...]
+    pairs: tuple[PairRow, ...]
     findings: tuple[Finding, ...]
 
     def count(self, grade: str) -> int:
@@ -83,6 +86,7 @@ class Report:
             "domain": asdict(self.domain),
             "features": [asdict(feature) for feature in self.features],
             "bodies": [asdict(body) for body in self.bodies],
+            "pairs": [asdict(pair) for pair in self.pairs],
             "findings": [finding.to_dict() for finding in self.findings],
         }
 
@@ -97,7 +101,8 @@ def check(case: Case) -> Report:
         spot_check(system, system.pose, None, 0)
         found = sorted(findings(model, system, start), key=lambda finding: GRADES.index(finding.grade))
         rows = tuple(features(system, model.fluid.mesh)), tuple(_rows(system, start))
-        return Report(model.name, domain_row(model), *rows, tuple(found))
+        pairs = tuple(pair_rows(system, model.fluid.mesh))
+        return Report(model.name, domain_row(model), *rows, pairs, tuple(found))
 
 
 def findings(model: Model, system: System, start: Contacts) -> Iterator[Finding]:

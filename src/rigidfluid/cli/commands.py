@@ -52,6 +52,7 @@ from rigidfluid.cli.tables import (
     print_features,
     print_insertion,
     print_notes,
+    print_pairs,
     print_study,
     print_verdict,
 )
@@ -124,6 +125,7 @@ def check(scene: SceneFile, assignments: Assignments = None, json_file: JsonFile
         print_domain(report)
         print_features(report)
         print_bodies(report)
+        print_pairs(report)
         print_notes(report)
     if report.count("error"):
         raise typer.Exit(FOUND_ERRORS)

@@ -168,6 +168,19 @@ def print_bodies(report: Report) -> None:
         tell(f"and {len(report.bodies) - len(shown)} bodies that are further from anything")
 
 
+def print_pairs(report: Report) -> None:
+    """Print a table of the pairs that may touch, a row for each kind of pair."""
+    if not report.pairs:
+        return
+    heads = "impact of", "pairs", "speed", "Stokes number", "film meshed to", "law from", "touch at"
+    table = Table(*heads, "friction", "restitution", "in the fluid")
+    for pair in report.pairs[:MOST_BODIES]:
+        gaps = map(_figure, (pair.speed, pair.stokes_number, pair.resolved, pair.range, pair.roughness))
+        ends = ("unknown" if end is None else _figure(end) for end in (pair.restitution, pair.rebound))
+        table.add_row(Text(" and ".join(pair.names)), str(pair.count), *gaps, pair.friction, *ends)
+    make_console().print(table)
+
+
 def print_verdict(report: Report) -> None:
     """Print how many errors and warnings a check has found, and which."""
     tell(f"{report.scene}: {report.count('error')} errors, {report.count('warning')} warnings")

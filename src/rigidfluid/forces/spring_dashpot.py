@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.part import PartOptions
-from rigidfluid.core.model.types import Contacts, Motion
+from rigidfluid.core.model.types import Contacts, Loads, Motion
 
 
 class SpringDashpotOptions(PartOptions):
@@ -78,6 +78,11 @@ class SpringDashpotLaw(ForceLaw):
     Options: ClassVar[type[PartOptions]] = SpringDashpotOptions
     options: SpringDashpotOptions
 
+    def __init__(self, options: PartOptions, range: float, loads: Loads | None = None) -> None:
+        super().__init__(options, range, loads)
+        self.friction = self.options.friction
+        self.sticking = self.options.tangential_stiffness is not None
+
     def force(self, contacts: Contacts) -> FloatArray:
         """k δ along the normal on ``body_a``, (m, d) [force]."""
         return (self.options.stiffness * self._overlap(contacts))[:, None] * contacts.normal
@@ -113,11 +118,6 @@ class SpringDashpotLaw(ForceLaw):
         slipped = np.divide(held - damped, stiffness, out=np.zeros_like(displacement), where=stiffness > 0.0)
         sticks = np.all(held == stiffness * displacement + damped, axis=1, keepdims=True) & (stiffness > 0.0)
         return np.where(sticks, displacement, slipped)
-
-    @property
-    def sticking(self) -> bool:  # type: ignore[override]
-        """Tell whether there is a spring along the surfaces."""
-        return self.options.tangential_stiffness is not None
 
     def _dashpot(self, contacts: Contacts, motion: Motion) -> tuple[FloatArray, FloatArray, FloatArray]:
         """γ (m,) [force·time/length], and the relative velocity along the normal (m,) and across it (m, d)."""

@@ -420,7 +420,7 @@ def test_command_writes_json_and_its_exit_code_says_whether_there_are_errors(
     result = CliRunner().invoke(app, ["check", str(path), "--json", str(written)], env={"COLUMNS": "200"})
     assert result.exit_code == code
     data = json.loads(written.read_text())
-    assert list(data) == ["scene", "errors", "warnings", "notes", "domain", "features", "bodies", "findings"]
+    assert list(data) == ["scene", "errors", "warnings", "notes", "domain", "features", "bodies", "pairs", "findings"]
     assert set(data["features"][0]) == {"name", "on", "why"}
     assert data["bodies"][0]["impact_speed"] == pytest.approx(np.sqrt(2 * GRAVITY * (HEIGHT - RANGE)))
     assert (data["bodies"][0]["smallest_gap"], data["bodies"][0]["nearest"]) == (pytest.approx(HEIGHT), "bottom")

@@ -56,6 +56,8 @@ class ForceLaw(Part):
     """Contacts that it is made for: `walls`, `pairs` of bodies, or `all`; it is not evaluated in others."""
     vanishes_at_range: bool = True
     """Tell whether its force fades out towards range; else it jumps to zero there. The energy is zero there anyway."""
+    friction: float = 0.0
+    """Coefficient of Coulomb friction: the largest ratio of tangential to normal force [1]."""
     loads: Loads | None = None
     """Loads from which a law sets its strength; bodies of equal loads then meet alike."""
 

@@ -65,6 +65,10 @@ class FilmLoss:
         """Words after those for the dry restitution."""
         return f" · exp(-{self.decay:g}/St)"
 
+    def whole(self, dry: float, contacts: Contacts, stokes: FloatArray) -> FloatArray:
+        """Restitution of whole impacts, the film included, at Stokes numbers (m,) at its edge, (m,) [1]."""
+        return np.asarray(dry * np.exp(-self.decay / stokes))
+
     def restitution(
         self, dry: float, law: ForceLaw, contacts: Contacts, mass: FloatArray
     ) -> Callable[[FloatArray], FloatArray]:

@@ -28,6 +28,11 @@ class RoughFilm:
         """Words after those for the dry restitution."""
         return f" behind a film down to a gap of {self.roughness:g}"
 
+    def whole(self, dry: float, contacts: Contacts, stokes: FloatArray) -> FloatArray:
+        """Restitution of whole impacts, the film included, at Stokes numbers (m,) at its edge, (m,) [1]."""
+        taken = self.taken(contacts)
+        return np.asarray(np.maximum(dry * (stokes - taken) - taken, 0.0) / stokes)
+
     def restitution(
         self, dry: float, law: ForceLaw, contacts: Contacts, mass: FloatArray
     ) -> Callable[[FloatArray], FloatArray]:
