@@ -96,6 +96,38 @@ def test_sliding_friction_turns_disks_alike() -> None:
     assert comparison.rows[0].spin <= 1e-8 * 200.0
 
 
+def oblique_hit(dimension: int, **keys: float) -> Row:
+    """Two balls of unequal weight that hit each other off centre, held by springs along their surfaces too."""
+    still = [0.0] * (dimension - 2)
+    left = ball([0.35, 0.5, *(0.5 + part for part in still)], [10.0, 0.0, *still])
+    right = ball([0.65, 0.58, *(0.5 + part for part in still)], [-10.0, 0.0, *still], density=2.0)
+    return only_row(dry_scene(SPRING | keys, left, right, end=0.012, step=1e-5))
+
+
+@needs_lammps
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_springs_along_surfaces_slip_alike(dimension: int) -> None:
+    slipping = {"friction": 0.05, "tangential_damping": 0.0, "tangential_stiffness": 2.86e4}
+    row, without = oblique_hit(dimension, **slipping), oblique_hit(dimension)
+    assert_agrees(row)
+    assert row.spin <= 1e-8 * 200.0
+    assert abs(row.ours.energy - without.ours.energy) > 1e-3 * without.ours.energy
+
+
+@needs_lammps
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_springs_along_surfaces_that_stick_differ_by_the_arm_alone(dimension: int) -> None:
+    """LAMMPS takes velocities at the surfaces of the enlarged balls, we in the middle of the overlap: ∝ 1/√k."""
+
+    def row(stiffness: float) -> Row:
+        keys = {"stiffness": stiffness, "tangential_stiffness": 2.0 / 7.0 * stiffness}
+        return oblique_hit(dimension, friction=10.0, tangential_damping=0.0, **keys)
+
+    soft, hard = row(1e5), row(1.6e6)
+    assert soft.spin / hard.spin == pytest.approx(4.0, rel=0.1)
+    assert hard.position <= 0.01 * RADIUS
+
+
 @needs_lammps
 def test_friction_at_a_wall_differs_by_the_arm_alone() -> None:
     """LAMMPS lets it act at the whole radius of the enlarged ball, we in the middle of the overlap: ∝ 1/√k."""

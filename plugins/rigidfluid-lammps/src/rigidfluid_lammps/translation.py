@@ -139,7 +139,8 @@ def _contact_model(law: SpringDashpotLaw) -> str:
         normal = f"hooke {options.stiffness:.17g} {options.damping or 0.0:.17g} damping velocity"
     else:
         normal = f"hooke {options.stiffness:.17g} {options.restitution:.17g} damping coeff_restitution"
-    return f"{normal} tangential linear_nohistory {options.tangential_damping:.17g} {options.friction:.17g}"
+    history = "nohistory" if options.tangential_stiffness is None else f"history {options.tangential_stiffness:.17g}"
+    return f"{normal} tangential linear_{history} {options.tangential_damping:.17g} {options.friction:.17g}"
 
 
 def _tabulated(law: ForceLaw, system: System, kinds: Kinds, folder: Path) -> Iterator[str]:
