@@ -42,6 +42,7 @@ PICTURES = {
     "settling_cylinder": Shown("vorticity", (3.0, 6.0, 9.0, 12.0), (-2.0, -2.0, 2.0, 8.0)),
     "several_laws": Shown("speed", (0.01, 0.02, 0.03, 0.04)),
     "slider": Shown("speed", (0.03, 0.06, 0.09, 0.15)),
+    "slope": Shown("paths", (0.1,)),
     "squeezed_film": Shown("mesh", (0.01,), (-1.5, -1.1, 1.5, 1.3), plane="xz"),
     "stenosis": Shown("speed", (0.002, 0.0054, 0.0068)),
     "swimmer": Shown("streamlines", (1.0, 3.0)),
