@@ -35,7 +35,7 @@ def varying(monkeypatch: pytest.MonkeyPatch, now: list[float], before: list[floa
         *masses(count, 2), np.zeros(count, dtype=bool), placed(count, 2), split(np.zeros((count, 3)), 2)
     )
     system: Any = SimpleNamespace(motions=motions, law=object())
-    state: Any = SimpleNamespace(motions=SimpleNamespace(contact=wrench(before)), contacts=ANY)
+    state: Any = SimpleNamespace(motions=SimpleNamespace(contact=wrench(before)), contacts=ANY, springs=None)
     load = ContactLoad(wrench(now), None, 0.0, 0.0)
     monkeypatch.setattr(navier_stokes_scheme, "contact_load", lambda *_: load)
     monkeypatch.setattr(SubstepPath, "planned", lambda *_: SimpleNamespace(substep=substep))
