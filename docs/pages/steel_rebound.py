@@ -203,8 +203,8 @@ Contacts are described by two physical numbers, the [restitution](../forces.md#r
 That the roughness of these two surfaces is 2 µm is an assumption: none is measured in the data that the page compares
 with. It was not changed from run to run, but it was known from runs of an earlier version that values from 1 to 3 µm
 give heights from .28 to .37 D. So the page shows that one plausible length gives both the height and the time, with
-both meshes and steps; it is no prediction. What a film leaves of a Stokes number of {arrival} at range, the mean of these
-runs, by `e₀ (St - T) - T` with T from range to roughness:
+both meshes and steps; it is no prediction. What a film leaves of a Stokes number of {arrival} at range, the mean of
+these runs, by `e₀ (St - T) - T` with T from range to roughness:
 
 {sensitivity}
 
