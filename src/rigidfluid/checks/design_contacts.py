@@ -19,6 +19,7 @@ from rigidfluid.core.contact.laws.loads import (
 )
 from rigidfluid.core.contact.laws.stiffness import greatest_stiffness
 from rigidfluid.core.contact.laws.work_to_stop import share_left
+from rigidfluid.core.contact.pairs.gap_curvature import with_effective_radii
 from rigidfluid.core.contact.pairs.representative_contacts import (
     body_classes,
     facing_normal,
@@ -70,6 +71,11 @@ class DesignContacts:
     def stiffness(self) -> FloatArray:
         """Greatest stiffness on the way to the turning gaps (m,) [force/length]."""
         return greatest_stiffness(self.law, self.contacts, self.turning_gaps())
+
+    def effective_radius(self) -> FloatArray:
+        """Radius of the ball at a flat wall that squeezes a film alike, NaN where it is not known (m,) [length]."""
+        system = self.system
+        return with_effective_radii(self.contacts, system.bodies, system.walls, system.pose).effective_radius
 
     def smallest_gap(self) -> float | None:
         """Largest of the smallest gaps that the scene asks for in these contacts, None if it asks for none [length]."""

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import comb
 
 import numpy as np
 
@@ -13,11 +15,10 @@ from rigidfluid.checks.rebound import given_back
 from rigidfluid.core.contact.laws.restitution import Restitution
 from rigidfluid.core.contact.laws.rough_film import RoughFilm
 from rigidfluid.core.contact.laws.stokes_number import stokes_number
-from rigidfluid.core.contact.pairs.gap_curvature import with_effective_radii
-from rigidfluid.core.contact.pairs.representative_contacts import body_classes
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import Contacts
 from rigidfluid.core.scene.mesh_tables import MeshTable
 
 
@@ -75,16 +76,14 @@ def _stokes_number(design: DesignContacts, row: int) -> float | None:
     film = design.system.loads.film
     if film is None or not film.inertia or design.inverse_mass[row] == 0.0:
         return None
-    return float(design.speed[row] * stokes_number(design.contacts, film, design.system.loads)[row])
+    return float(design.speed[row] * stokes_number(_only(design, row), film, design.system.loads)[0])
 
 
 def _resolved(design: DesignContacts, mesh: MeshTable | None, row: int) -> float | None:
     """Gap down to which the mesh resolves the film; None without one, or where its curvature is not known [length]."""
-    system = design.system
-    if mesh is None or system.loads.film is None:
+    if mesh is None or design.system.loads.film is None:
         return None
-    curved = with_effective_radii(design.contacts, system.bodies, system.walls, system.pose).effective_radius
-    gap = float(resolved_gap(mesh, curved)[row])
+    gap = float(resolved_gap(mesh, design.effective_radius())[row])
     return gap if np.isfinite(gap) else None
 
 
@@ -122,19 +121,20 @@ def _rebound(
         return None
     losses = [law.loss for law in laws if isinstance(law, Restitution) and law.loss is not None]
     if len(losses) == len([law for law in laws if law.keeps_apart]) == 1:
-        contacts = select(design.contacts, np.array([row]))
-        return float(losses[0].whole(dry, contacts, np.array([stokes]))[0])
+        return float(losses[0].whole(dry, _only(design, row), np.array([stokes]))[0])
     if design.law.dissipative:
         return None
     return float(given_back(design, film, np.full(len(design.contacts), stokes))[row])
 
 
+def _only(design: DesignContacts, row: int) -> Contacts:
+    return select(design.contacts, np.array([row]))
+
+
 def _alike(design: DesignContacts, row: int) -> int:
     """Number of pairs of the kind of this one; a body counts once at all walls."""
-    kinds = body_classes(design.system)
-    a, b = int(design.contacts.body_a[row]), int(design.contacts.body_b[row])
-    first = next(alike for alike in kinds if a in alike)
+    sizes, first = Counter(design.kind.values()), design.kind[int(design.contacts.body_a[row])]
     if design.at_walls:
-        return len(first)
-    second = next(alike for alike in kinds if b in alike)
-    return len(first) * (len(first) - 1) // 2 if first is second else len(first) * len(second)
+        return sizes[first]
+    second = design.kind[int(design.contacts.body_b[row])]
+    return comb(sizes[first], 2) if first == second else sizes[first] * sizes[second]

@@ -12,7 +12,6 @@ from rigidfluid.checks.film import resolved_gap
 from rigidfluid.checks.finding import Finding, figure, round_down
 from rigidfluid.core.contact.laws.film_loss import REBOUND, braking
 from rigidfluid.core.contact.laws.stokes_number import stokes_number, stokes_number_taken
-from rigidfluid.core.contact.pairs.gap_curvature import with_effective_radii
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.types import Contacts, Film
@@ -38,11 +37,9 @@ def rebound_findings(design: DesignContacts, film: Film, mesh: MeshTable) -> Ite
     """
     if design.law.dissipative or not film.inertia:
         return
-    system = design.system
     struck = (design.speed > 0.0) & (design.inverse_mass > 0.0)
-    stokes = np.where(struck, design.speed * stokes_number(design.contacts, film, system.loads), np.inf)
-    curved = with_effective_radii(design.contacts, system.bodies, system.walls, system.pose).effective_radius
-    resolved = resolved_gap(mesh, curved)  # NaN for facets, whose film is not known
+    stokes = np.where(struck, design.speed * stokes_number(design.contacts, film, design.system.loads), np.inf)
+    resolved = resolved_gap(mesh, design.effective_radius())  # NaN for facets, whose film is not known
     back = np.where(np.isnan(resolved), 1.0, given_back(design, film, stokes))
     for row in design.worst(-stokes):
         if struck[row]:

@@ -51,9 +51,7 @@ class LubricationLaw(ForceLaw):
 
     def __init__(self, options: PartOptions, range: float, loads: Loads | None = None) -> None:
         super().__init__(options, range, loads)
-        if self.options.cutoff >= range:
-            allowed = f"a length below contact.range = {range}"
-            raise SceneError("contact.cutoff", self.options.cutoff, allowed, "Shorten it, or widen the range.")
+        self.require_below_range("cutoff", self.options.cutoff)
 
     def force(self, contacts: Contacts) -> FloatArray:
         """Zero, (m, d): a film at rest pushes nothing [force]."""

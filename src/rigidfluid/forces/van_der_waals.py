@@ -12,7 +12,6 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.force_law import ForceLaw, Overlap, Sign
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Loads
-from rigidfluid.errors import SceneError
 
 
 class VanDerWaalsOptions(PartOptions):
@@ -55,9 +54,7 @@ class VanDerWaalsLaw(ForceLaw):
 
     def __init__(self, options: PartOptions, range: float, loads: Loads | None = None) -> None:
         super().__init__(options, range, loads)
-        if self.options.cutoff >= range:
-            allowed = f"a length below contact.range = {range}"
-            raise SceneError("contact.cutoff", self.options.cutoff, allowed, "Shorten it, or widen the range.")
+        self.require_below_range("cutoff", self.options.cutoff)
 
     def force(self, contacts: Contacts) -> FloatArray:
         """-p C [h^(-p-1) - range^(-p-1)] along the normal on ``body_a``, h = gap, (m, d) [force]."""

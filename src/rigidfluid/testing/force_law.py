@@ -118,6 +118,8 @@ class ForceLawContract:
         contacts = self._contacts_of(law, self.gap_fractions, dimension)
         for column in (law.force, law.energy):
             assert column(contacts).any() == law.conservative
+        if law.vanishes_at_range:
+            assert law.stiffness(contacts).any() == law.conservative
         assert law.conservative or not law.stiffness(contacts).any()
         assert law.damping(contacts, _motion(contacts)).any() == law.dissipative
 

@@ -27,7 +27,7 @@ def shell(law: ForceLaw | None) -> float:
 
 
 def rubs(law: ForceLaw | None) -> bool:
-    """Whether contacts can turn bodies."""
+    """Tell whether contacts can turn bodies."""
     return isinstance(law, SpringDashpotLaw) and law.options.friction > 0.0
 
 

@@ -13,6 +13,7 @@ from rigidfluid.core.geometry.guarded import gives
 from rigidfluid.core.model import part_answers as parts
 from rigidfluid.core.model.part import Part, PartOptions
 from rigidfluid.core.model.types import Contacts, Loads, Motion
+from rigidfluid.errors import SceneError
 
 Between = Literal["all", "walls", "pairs"]
 Sign = Literal["repels", "attracts", "either"]
@@ -65,6 +66,12 @@ class ForceLaw(Part):
         self.options = options
         self.range = range
 
+    def require_below_range(self, key: str, length: float) -> None:
+        """Raise SceneError unless a ``length`` of the law's table, by its ``key``, is below the range [length]."""
+        if length >= self.range:
+            allowed = f"a length below contact.range = {self.range}"
+            raise SceneError(f"contact.{key}", length, allowed, "Shorten it, or widen the range.")
+
     @property
     @gives(parts.ranges)
     def ranges(self) -> tuple[float, ...]:
@@ -73,7 +80,7 @@ class ForceLaw(Part):
 
     @property
     def keeps_apart(self) -> bool:
-        """Whether it can hold two surfaces apart at rest: it has an energy, and does not only attract."""
+        """Tell whether it can hold two surfaces apart at rest: it has an energy, and does not only attract."""
         return self.conservative and self.sign != "attracts"
 
     @abstractmethod

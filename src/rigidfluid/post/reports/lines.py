@@ -144,7 +144,7 @@ def energy_plot(results: Results) -> Figure:
 
 
 def step_plot(results: Results) -> Figure:
-    """How long each step is."""
+    """Length of each step."""
     figure, (axes,) = time_panels(1)
     axes.step(results.time[1:], np.diff(results.time), where="pre", color=BLUE)
     axes.set_yscale("log")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rigidfluid.core.contact.pairs.body_points import body_arms, placed_points
 from rigidfluid.core.contact.pairs.same_contacts import PointPairs, all_different, nearest_contacts
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.mechanics.rigid import rotation_matrices
@@ -33,8 +34,8 @@ def springs_at(contacts: Contacts, displacement: FloatArray, stiffness: FloatArr
     return TangentialSprings(
         near.body_a,
         near.body_b,
-        _moved(near.body_a, near.point_a, -pose.position, np.zeros_like(pose.position), turned_back),
-        _moved(near.body_b, near.point_b, -pose.position, np.zeros_like(pose.position), turned_back),
+        body_arms(near.body_a, near.point_a, pose.position, turned_back),
+        body_arms(near.body_b, near.point_b, pose.position, turned_back),
         near.normal,
         displacement[chosen],
         stiffness[chosen],
@@ -75,16 +76,6 @@ def _matched(springs: TangentialSprings, contacts: Contacts, pose: Pose) -> tupl
 
 
 def _carried_points(springs: TangentialSprings, pose: Pose) -> PointPairs:
-    rotation, still = rotation_matrices(pose.orientation), np.zeros_like(pose.position)
-    return PointPairs(
-        _moved(springs.body_a, springs.arm_a, still, pose.position, rotation),
-        _moved(springs.body_b, springs.arm_b, still, pose.position, rotation),
-    )
-
-
-def _moved(body: IntArray, point: FloatArray, before: FloatArray, after: FloatArray, turn: FloatArray) -> FloatArray:
-    """R (x + x₀) + x₁ of points x (s, d) on bodies, with x₀, x₁ (n, d) and R (n, d, d) of each; those on walls stay."""
-    moved, on_body = point.copy(), body < len(before)
-    index = body[on_body]
-    moved[on_body] = np.einsum("nij,nj->ni", turn[index], point[on_body] + before[index]) + after[index]
-    return moved
+    place = pose.position, rotation_matrices(pose.orientation)
+    arms = (springs.body_a, springs.arm_a), (springs.body_b, springs.arm_b)
+    return PointPairs(*(placed_points(body, arm, *place) for body, arm in arms))

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rigidfluid.core.contact.pairs.body_points import body_arms, placed_points
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.force_law import ForceLaw
@@ -68,19 +69,13 @@ class _Points(NamedTuple):
 
     def moved(self, old: Pose, pose: Pose, rotation: FloatArray) -> FloatArray:
         """Present positions (m, d) [length]."""
-        moved = self.arm.copy()
-        on_body = self.body < len(pose.position)
-        index, turning = self.body[on_body], self.turns[on_body, None]
-        turned = pose.position[index] + np.einsum("nij,nj->ni", rotation[index], self.arm[on_body])
-        shifted = self.point[on_body] + pose.position[index] - old.position[index]
-        moved[on_body] = np.where(turning, turned, shifted)
+        moved = placed_points(self.body, self.arm, pose.position, rotation)
+        shifted = ~self.turns & (self.body < len(pose.position))
+        index = self.body[shifted]
+        moved[shifted] = self.point[shifted] + pose.position[index] - old.position[index]
         return moved
 
 
 def _points(body: IntArray, point: FloatArray, radius: FloatArray, pose: Pose, turned_back: FloatArray) -> _Points:
     """Points on bodies of this ``radius`` (m,); that of a ball does not turn with it, as its nearest point does not."""
-    arm = point.copy()
-    on_body = body < len(pose.position)
-    index = body[on_body]
-    arm[on_body] = np.einsum("nij,nj->ni", turned_back[index], point[on_body] - pose.position[index])
-    return _Points(body, point, arm, ~np.isfinite(radius))
+    return _Points(body, point, body_arms(body, point, pose.position, turned_back), ~np.isfinite(radius))
