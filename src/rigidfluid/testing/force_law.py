@@ -24,8 +24,8 @@ class ForceLawContract:
 
     Override the fixture ``law``; and ``make_contacts`` for a law that needs other contacts than two balls and a ball at
     a wall: both balls are bodies 0 and 1, the wall is surface 2. The law itself declares its behaviour: ``sign``,
-    ``overlap``, ``acts_in``, ``vanishes_at_range``, and whether it has an energy and damping at all, ``conservative``
-    and ``dissipative``.
+    ``overlap``, ``acts_in``, ``vanishes_at_range``, and whether it has an energy, damping and couples at all,
+    ``conservative``, ``dissipative`` and ``couples``.
     """
 
     gap_fractions: ClassVar[tuple[float, ...]] = (0.03, 0.2, 0.5, 0.8, 0.97)
@@ -53,6 +53,7 @@ class ForceLawContract:
         for column in (law.force, law.energy, law.stiffness):
             assert not column(contacts).any()
         assert not law.damping(contacts, _motion(contacts)).any()
+        assert not law.couple(contacts, _motion(contacts)).any()
 
     def test_continuous_at_range(self, law: ForceLaw, dimension: int) -> None:
         """Force and energy fade out as the gap grows to the range; the force may jump there where the law says so."""
@@ -113,7 +114,8 @@ class ForceLawContract:
             np.testing.assert_allclose(before, after, rtol=0, atol=1e-6 * largest)
 
     def test_has_the_kinds_of_force_that_it_declares(self, law: ForceLaw, dimension: int) -> None:
-        """An energy if conservative, damping if dissipative, one of both at least, and zeros where it has none."""
+        """An energy if conservative, damping if dissipative, one of both at least, couples only beside damping, and
+        zeros where it has none."""
         assert law.conservative or law.dissipative
         contacts = self._contacts_of(law, self.gap_fractions, dimension)
         for column in (law.force, law.energy):
@@ -122,16 +124,21 @@ class ForceLawContract:
             assert law.stiffness(contacts).any() == law.conservative
         assert law.conservative or not law.stiffness(contacts).any()
         assert law.damping(contacts, _motion(contacts)).any() == law.dissipative
+        assert law.couple(contacts, _motion(contacts)).any() == law.couples
+        assert law.dissipative or not law.couples
 
     def test_damping_never_adds_energy(self, law: ForceLaw, dimension: int) -> None:
-        """Damping · velocity ≤ 0 whatever the velocity, and no damping at rest."""
+        """Damping · velocity + couple · angular velocity ≤ 0 however bodies move and turn, and none of both at rest."""
         contacts = self._contacts_of(law, self._finite_fractions(law), dimension)
         for seed in range(20):
-            motion = _motion(contacts, seed)
-            power = np.sum(law.damping(contacts, motion) * motion.velocity, axis=1)
-            assert np.all(power <= 1e-12 * np.abs(power).max())
-        still = replace(motion, velocity=np.zeros_like(motion.velocity))
+            moving = _motion(contacts, seed)
+            for motion in (moving, _least_resisted(law, contacts, moving)):
+                power = np.sum(law.damping(contacts, motion) * motion.velocity, axis=1)
+                power += np.sum(law.couple(contacts, motion) * motion.angular_velocity, axis=1)
+                assert np.all(power <= 1e-12 * np.abs(power).max())
+        still = Motion(np.zeros_like(motion.velocity), motion.mass)
         assert not law.damping(contacts, still).any()
+        assert not law.couple(contacts, still).any()
 
     def test_turns_and_moves_with_the_frame(self, law: ForceLaw, dimension: int) -> None:
         """Turning the contacts turns the forces, and nothing else changes; where they are changes nothing."""
@@ -145,9 +152,11 @@ class ForceLawContract:
             point_b=contacts.point_b @ rotation.T + shift,
             normal=contacts.normal @ rotation.T,
         )
-        turned_motion = replace(motion, velocity=motion.velocity @ rotation.T)
+        spin = motion.angular_velocity
+        turned_motion = replace(motion, velocity=motion.velocity @ rotation.T, angular_velocity=_turned(spin, rotation))
         _assert_close(law.force(turned), law.force(contacts) @ rotation.T)
         _assert_close(law.damping(turned, turned_motion), law.damping(contacts, motion) @ rotation.T)
+        _assert_close(law.couple(turned, turned_motion), _turned(law.couple(contacts, motion), rotation))
         _assert_close(law.energy(turned), law.energy(contacts))
         _assert_close(law.stiffness(turned), law.stiffness(contacts))
 
@@ -169,7 +178,9 @@ class ForceLawContract:
             at_wall=contacts.at_wall,
         )
         _assert_close(law.force(swapped), -law.force(contacts))
-        _assert_close(law.damping(swapped, replace(motion, velocity=-motion.velocity)), -law.damping(contacts, motion))
+        opposite = Motion(-motion.velocity, motion.mass, -motion.angular_velocity)
+        _assert_close(law.damping(swapped, opposite), -law.damping(contacts, motion))
+        _assert_close(law.couple(swapped, opposite), -law.couple(contacts, motion))
         _assert_close(law.energy(swapped), law.energy(contacts))
         _assert_close(law.stiffness(swapped), law.stiffness(contacts))
 
@@ -181,8 +192,10 @@ class ForceLawContract:
         count = 1 + int(max(contacts.body_a.max(), contacts.body_b.max()))
         position = np.random.default_rng(8).normal(size=(count, dimension))
         pose = Pose(position, np.tile(np.eye(1, 1 if dimension == 2 else 4), (len(position), 1)))
-        force = law.force(contacts) + law.damping(contacts, _motion(contacts))
-        wrench = contact_wrench(contacts, force, pose)
+        force, couple = law.force(contacts) + law.damping(contacts, _motion(contacts)), None
+        if law.couples:
+            couple = law.couple(contacts, _motion(contacts))
+        wrench = contact_wrench(contacts, force, pose, couple)
         about = np.random.default_rng(9).normal(size=dimension)
         turning = wrench.torque + moment(position - about, wrench.force)
         scale = np.abs(force).max()
@@ -195,10 +208,11 @@ class ForceLawContract:
         motion = _motion(contacts)
         order = np.random.default_rng(7).permutation(len(contacts))[: len(contacts) // 2]
         for chosen in (order, order[:0]):
-            some, moving = _taken(contacts, chosen), Motion(motion.velocity[chosen], motion.mass[chosen])
+            some, moving = _taken(contacts, chosen), motion.select(chosen)
             for column in (law.force, law.energy, law.stiffness):
                 np.testing.assert_allclose(column(some), column(contacts)[chosen], rtol=1e-14)
             np.testing.assert_allclose(law.damping(some, moving), law.damping(contacts, motion)[chosen], rtol=1e-14)
+            np.testing.assert_allclose(law.couple(some, moving), law.couple(contacts, motion)[chosen], rtol=1e-14)
 
     def _contacts_of(self, law: ForceLaw, fractions: tuple[float, ...], dimension: int) -> Contacts:
         contacts = self.make_contacts(law.range * np.array(fractions), dimension)
@@ -242,8 +256,28 @@ def _ball_contacts(gap: FloatArray, radius_b: FloatArray, dimension: int) -> Con
 
 
 def _motion(contacts: Contacts, seed: int = 3) -> Motion:
-    random = np.random.default_rng(seed)
-    return Motion(random.normal(size=contacts.normal.shape), random.uniform(0.1, 10.0, len(contacts)))
+    random, dimension = np.random.default_rng(seed), contacts.normal.shape[1]
+    velocity, mass = random.normal(size=contacts.normal.shape), random.uniform(0.1, 10.0, len(contacts))
+    return Motion(velocity, mass, random.normal(size=(len(contacts), 1 if dimension == 2 else 3)))
+
+
+def _least_resisted(law: ForceLaw, contacts: Contacts, motion: Motion) -> Motion:
+    """Motion whose power is the greatest if force and couple are linear: an eigenvector of their matrix (d+k, d+k)."""
+    dimension, width = motion.velocity.shape[1], motion.velocity.shape[1] + motion.angular_velocity.shape[1]
+    answers = []
+    for unit in np.eye(width):
+        velocity, spin = (np.tile(part, (len(contacts), 1)) for part in np.split(unit, [dimension]))
+        one = Motion(velocity, motion.mass, spin)
+        answers.append(np.hstack([law.damping(contacts, one), law.couple(contacts, one)]))
+    matrix = np.stack(answers, axis=2)
+    greatest = np.linalg.eigh(matrix + np.swapaxes(matrix, 1, 2))[1][:, :, -1]
+    return Motion(greatest[:, :dimension], motion.mass, greatest[:, dimension:])
+
+
+def _turned(spin: FloatArray, rotation: FloatArray) -> FloatArray:
+    """Angular velocities or couples (m, k) in a frame turned or mirrored by ``rotation`` (d, d)."""
+    turned = spin if len(rotation) == 2 else spin @ rotation.T
+    return np.asarray(np.linalg.det(rotation) * turned)
 
 
 def _along(law: ForceLaw, contacts: Contacts) -> FloatArray:

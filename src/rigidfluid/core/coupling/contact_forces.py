@@ -20,7 +20,7 @@ def contact_forces(system: System, scheme: Scheme, state: State, time: float) ->
         return np.zeros((len(contacts), system.dimension))
     if not law.dissipative:
         return law.force(contacts)
-    motion = relative_motion(contacts, scheme.bodies_now(state, time), system.wall_velocity)
+    motion = relative_motion(contacts, scheme.bodies_now(state, time), system.wall_velocity, law.couples)
     force = np.asarray(law.force(contacts) + law.damping(contacts, motion))
     if law.sticking:
         force += stretched(law, contacts, motion, state.pose, state.springs, 0.0).force

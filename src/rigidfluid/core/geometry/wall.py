@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -11,8 +12,17 @@ from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.geometry.surface import Plane, Surface
 from rigidfluid.errors import SceneError
 
-WallVelocities = Callable[[IntArray, FloatArray], FloatArray]
-"""Velocity (m, d) at which walls slide in themselves, of surface numbers (m,) at points (m, d) [length/time]."""
+
+class WallVelocities(Protocol):
+    """Motion of walls that slide in themselves, by surface number."""
+
+    def __call__(self, surfaces: IntArray, points: FloatArray) -> FloatArray:
+        """Velocity (m, d) of ``surfaces`` (m,) at ``points`` (m, d) of theirs [length/time]."""
+        ...
+
+    def angular_velocity(self, surfaces: IntArray, points: FloatArray) -> FloatArray:
+        """Angular velocity (m, k) of ``surfaces`` (m,) at ``points`` (m, d) of theirs [rad/time]."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,3 +31,15 @@ def accumulate(force, torque, position, body_a, point_a, body_b, point_b, force_
                 torque[body, 0] += y * w - z * v
                 torque[body, 1] += z * u - x * w
                 torque[body, 2] += turning
+
+
+@njit(cache=True)
+def accumulate_couples(torque, body_a, body_b, couple_on_a):
+    """Add +C at a, then -C at b, in the order of the contacts."""
+    for side in range(2):
+        sign = 1.0 if side == 0 else -1.0
+        for i in range(len(body_a)):
+            body = body_a[i] if side == 0 else body_b[i]
+            if body < len(torque):
+                for k in range(torque.shape[1]):
+                    torque[body, k] += sign * couple_on_a[i, k]

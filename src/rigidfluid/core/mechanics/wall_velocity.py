@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.curl import curl
 from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.mechanics.rigid import cross
+
+_STEP = 1e-3
+"""Step of differences over the largest coordinate."""
 
 
 @dataclass(frozen=True)
@@ -42,3 +46,19 @@ class SlidingWalls:
             on = surfaces == surface
             velocity[on] = at(points[on])
         return velocity
+
+    def angular_velocity(self, surfaces: IntArray, points: FloatArray) -> FloatArray:
+        """Angular velocity (m, k) of ``surfaces`` (m,) at ``points`` (m, d) of theirs, half the curl of their velocity,
+        zero of all others [rad/time]."""
+        turning = np.zeros((len(points), 1 if points.shape[1] == 2 else 3))
+        for surface, at in self._sliding:
+            on = surfaces == surface
+            turning[on] = 0.5 * curl(_slopes(at, points[on]))
+        return turning
+
+
+def _slopes(velocity: Callable[[FloatArray], FloatArray], points: FloatArray) -> FloatArray:
+    """Slopes ∂v_i/∂x_j (N, d, d) at ``points`` (N, d) by central differences, exact for rigid motions [1/time]."""
+    step = _STEP * np.abs(points).max(initial=0.0) or 1.0
+    along = step * np.eye(points.shape[1])
+    return np.stack([velocity(points + one) - velocity(points - one) for one in along], axis=-1) / (2.0 * step)

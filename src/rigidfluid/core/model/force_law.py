@@ -24,6 +24,7 @@ class ForceLaw(Part):
     """A short-range force between two surfaces: one that an energy gives, and one that takes energy out.
 
     All forces act on ``body_a``, half-way between the contact points; ``core/mechanics/wrenches`` applies the reaction.
+    So it does with couples, which suffices for any interaction that keeps the angular momentum of a pair.
 
     Parameters
     ----------
@@ -48,6 +49,8 @@ class ForceLaw(Part):
     sticking: bool = False
     """Tell whether it has springs along the surfaces, which remember how far these have moved past each other; else
     their stiffness is zero."""
+    couples: bool = False
+    """Tell whether its dampers turn bodies by couples besides their force; else these are zero."""
     sign: Sign = "repels"
     """Sign of the energy's force between contact and range; "either" for one that changes or is zero in part of it."""
     overlap: Overlap = "repels"
@@ -100,8 +103,15 @@ class ForceLaw(Part):
 
     @gives(rows(lambda _, contacts, motion: contacts.normal.shape, shorter=True))
     def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
-        """Further force on ``body_a`` that the relative velocity gives, (m, d), of power ≤ 0 [force]."""
+        """Further force F on ``body_a`` that the relative motion gives, (m, d) [force]: F·v + C·w ≤ 0 with the couple C
+        and the relative velocities v and w of the surfaces, and F·v ≤ 0 where w is zero."""
         return np.zeros_like(contacts.normal)
+
+    @gives(rows(lambda _, contacts, motion: motion.angular_velocity.shape, shorter=True))
+    def couple(self, contacts: Contacts, motion: Motion) -> FloatArray:
+        """Couple C on ``body_a`` that the relative motion gives besides the moment of the force, (m, k)
+        [force·length]; ``body_b`` takes the opposite one."""
+        return np.zeros_like(motion.angular_velocity)
 
     @gives(rows(lambda _, contacts: contacts.gap.shape, shorter=True))
     def tangential_stiffness(self, contacts: Contacts) -> FloatArray:

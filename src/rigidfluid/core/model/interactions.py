@@ -76,6 +76,7 @@ class SumOfLaws(ForceLaw):
         self.overlap = _overlap_of(with_energy)
         self.vanishes_at_range = all(law.vanishes_at_range for law in with_energy)
         self.sticking = any(law.sticking for law in laws)
+        self.couples = any(law.couples for law in laws)
 
     @property
     def ranges(self) -> tuple[float, ...]:
@@ -98,9 +99,17 @@ class SumOfLaws(ForceLaw):
         """Σ of what the laws' dampers add on ``body_a``, (m, d) [force]."""
 
         def damping(law: ForceLaw, some: Contacts, chosen: BoolArray) -> FloatArray:
-            return law.damping(some, Motion(motion.velocity[chosen], motion.mass[chosen]))
+            return law.damping(some, motion.select(chosen))
 
         return self._sum(contacts, np.zeros_like(contacts.normal), damping)
+
+    def couple(self, contacts: Contacts, motion: Motion) -> FloatArray:
+        """Σ of the laws' couples on ``body_a``, (m, k) [force·length]."""
+
+        def couple(law: ForceLaw, some: Contacts, chosen: BoolArray) -> FloatArray:
+            return law.couple(some, motion.select(chosen))
+
+        return self._sum(contacts, np.zeros_like(motion.angular_velocity), couple)
 
     def tangential_stiffness(self, contacts: Contacts) -> FloatArray:
         """Σ k of the springs along the surfaces, (m,) [force/length]: one law at most has some in a contact."""
@@ -110,9 +119,7 @@ class SumOfLaws(ForceLaw):
         """Displacement of these springs that friction holds, (m, d) [length]."""
 
         def held(law: ForceLaw, some: Contacts, chosen: BoolArray) -> FloatArray:
-            return law.held_displacement(
-                some, Motion(motion.velocity[chosen], motion.mass[chosen]), displacement[chosen]
-            )
+            return law.held_displacement(some, motion.select(chosen), displacement[chosen])
 
         return self._sum(contacts, np.zeros_like(displacement), held)
 

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 _FROM_RADII: FloatArray = np.empty(0)
 """Placeholder for effective radii that are not given, and follow from the radii of curvature."""
 
+_NO_TURNING: FloatArray = np.empty(0)
+"""Placeholder for relative angular velocities that are not given, and are zero."""
+
 FluidState = Mapping[str, FloatArray]
 """State of a fluid backend between steps, as named arrays, so that a checkpoint can hold it unchanged."""
 
@@ -88,11 +91,22 @@ class Motion:
     """Relative motion of the surfaces of each contact, for forces that depend on it.
 
     ``velocity`` (m, d) of a relative to b, both as rigid bodies, half-way between the contact points [length/time];
-    ``mass`` (m,) effective, m_a m_b/(m_a + m_b), and m_a at a wall [mass].
+    ``mass`` (m,) effective, m_a m_b/(m_a + m_b), and m_a at a wall [mass]; ``angular_velocity`` (m, k) of a relative to
+    b, zero if not given, as for laws that give no couples [rad/time].
     """
 
     velocity: FloatArray
     mass: FloatArray
+    angular_velocity: FloatArray = field(default_factory=lambda: _NO_TURNING)
+
+    def __post_init__(self) -> None:
+        if self.angular_velocity is _NO_TURNING:
+            count, dimension = self.velocity.shape
+            object.__setattr__(self, "angular_velocity", np.zeros((count, 1 if dimension == 2 else 3)))
+
+    def select(self, chosen: IntArray | BoolArray) -> Motion:
+        """Motion in the contacts ``chosen``, (k,) numbers in the order wanted or (m,) truth values."""
+        return Motion(self.velocity[chosen], self.mass[chosen], self.angular_velocity[chosen])
 
 
 @dataclass(frozen=True, slots=True)

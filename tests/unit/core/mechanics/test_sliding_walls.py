@@ -9,6 +9,9 @@ import pytest
 
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
+from rigidfluid.core.geometry.surface import Plane
+from rigidfluid.core.geometry.wall import Wall
+from rigidfluid.core.mechanics.wall_velocity import SlidingWalls, WallVelocity
 from rigidfluid.core.run.run import run
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.features import features
@@ -115,3 +118,14 @@ def test_a_velocity_of_all_walls_is_across_some() -> None:
 def test_a_profile_is_no_matter_of_walls() -> None:
     with pytest.raises(SceneError, match=r"0.profile: profile is valid only with type = 'velocity', not 'wall'"):
         scene([BELT | {"profile": "parabolic"}])
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_angular_velocity_of_a_wall_that_turns_is_known_too(dimension: int) -> None:
+    spin = np.array([0.7]) if dimension == 2 else np.array([0.7, -0.2, 0.4])
+    turning = WallVelocity(np.ones(dimension), spin, np.full(dimension, 3.0))
+    floor = Plane(np.zeros(dimension), np.eye(dimension)[1])
+    walls = SlidingWalls([Wall(5, "drum", floor, turning), Wall(6, "belt", floor, lambda x: np.ones_like(x))])
+    points = np.random.default_rng(0).normal(size=(3, dimension))
+    found = walls.angular_velocity(np.array([4, 5, 6]), points)
+    np.testing.assert_allclose(found, [0.0 * spin, spin, 0.0 * spin], rtol=0, atol=1e-12)

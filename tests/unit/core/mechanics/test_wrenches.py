@@ -81,3 +81,14 @@ def test_no_contacts_no_wrench() -> None:
     wrench = contact_wrench(contacts_of([], [], 3), np.zeros((0, 3)), pose_of(3))
     assert not wrench.force.any()
     assert wrench.torque.shape == (3, 3)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_couple_turns_a_and_b_against_each_other_and_moves_none(dimension: int) -> None:
+    contacts, pose = contacts_of([0, 0, 1], [1, 2, WALL], dimension), pose_of(dimension)
+    couple = np.random.default_rng(4).normal(size=(3, 1 if dimension == 2 else 3))
+    force = np.random.default_rng(3).normal(size=(3, dimension))
+    alone, both = contact_wrench(contacts, force, pose), contact_wrench(contacts, force, pose, couple)
+    np.testing.assert_array_equal(both.force, alone.force)
+    added = [couple[0] + couple[1], couple[2] - couple[0], -couple[1]]
+    np.testing.assert_allclose(both.torque - alone.torque, added, rtol=0, atol=1e-14)

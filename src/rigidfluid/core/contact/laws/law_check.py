@@ -29,7 +29,7 @@ _TOLERANCE = 1e-3
 
 def check_laws(system: System) -> None:
     """Raise PluginError unless each law's force is -dU/dgap along the normal, its stiffness -dF/dgap, and its damping
-    takes power, in a hypothetical contact in which it acts."""
+    and couples take power, in a hypothetical contact in which it acts."""
     for interaction in system.interactions:
         contacts = _some_contact(system, interaction)
         if len(contacts):
@@ -59,10 +59,20 @@ def _check_law(law: ForceLaw, contacts: Contacts) -> None:
     _check_slope(law, "force", contacts, along, law.energy)
     _check_slope(law, "stiffness", contacts, stiffness, lambda one: np.sum(law.force(one) * one.normal, axis=1))
     for velocity in (contacts.normal, -contacts.normal):
-        power = np.sum(law.damping(contacts, Motion(velocity, np.ones(len(contacts)))) * velocity, axis=1)
-        if np.any(power > 0.0):
-            wrong = _wrong(contacts, power, power > 0.0, "powers, force times velocity, of 0 or less")
-            raise part_error(law, "damping", wrong)
+        motion = Motion(velocity, np.ones(len(contacts)))
+        power = np.sum(law.damping(contacts, motion) * velocity, axis=1)
+        _refuse_power(law, "damping", contacts, power, "force times velocity")
+    if law.couples:
+        turning = np.ones_like(motion.angular_velocity)
+        motion = Motion(np.zeros_like(contacts.normal), motion.mass, turning)
+        power = np.sum(law.couple(contacts, motion) * turning, axis=1)
+        _refuse_power(law, "couple", contacts, power, "couple times angular velocity")
+
+
+def _refuse_power(law: ForceLaw, key: str, contacts: Contacts, power: FloatArray, product: str) -> None:
+    """Raise PluginError where a ``power`` (m,), the ``product``, is above zero."""
+    if np.any(power > 0.0):
+        raise part_error(law, key, _wrong(contacts, power, power > 0.0, f"powers, {product}, of 0 or less"))
 
 
 def _check_slope(

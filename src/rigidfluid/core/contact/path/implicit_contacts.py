@@ -8,9 +8,15 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
+from rigidfluid.core.contact.path.contact_load import evaluate_damping, wall_power
 from rigidfluid.core.contact.path.contact_newton import MOST_DENSE, Problem, contact_forces
 from rigidfluid.core.contact.path.delassus import delassus
-from rigidfluid.core.contact.path.substep import JUST_IN, relative_motion, relative_velocity
+from rigidfluid.core.contact.path.substep import (
+    JUST_IN,
+    relative_angular_velocity,
+    relative_motion,
+    relative_velocity,
+)
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.wall import WallVelocities
 from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing
@@ -78,8 +84,8 @@ def implicit_contact_step(encounter: Encounter[M]) -> Crossing[M]:
     the way of the surfaces past each other by their mean velocity in both kicks, or in the drift where friction acts in
     kicks too, n and the points are those in mid-step (Gonzalez, J. Nonlinear Sci. 6 (1996) 449, doi:10.1007/BF02440162;
     Simo, Tarnow & Wong, Comput. Methods Appl. Mech. Eng. 100 (1992) 63, doi:10.1016/0045-7825(92)90115-Z). Dampers act
-    with the mean velocity, across the surfaces implicitly, along them with that of the iteration before. The step is of
-    second order where it resolves the contact, and keeps the energy at any length.
+    with the mean velocity, across the surfaces implicitly, along them and by couples with that of the iteration before.
+    The step is of second order where it resolves the contact, and keeps the energy at any length.
 
     The encounter's dynamics is left as it is. StepRejected is raised if bodies would overlap, no forces are found, or
     bodies turn too far for the forces to keep the energy.
@@ -94,7 +100,7 @@ def implicit_contact_step(encounter: Encounter[M]) -> Crossing[M]:
         spring = (force + dampers.across * (gap + offset)) / iterate.scale
         total = force[:, None] * iterate.middle.normal + dampers.along
         before = iterate
-        acting = contact_wrench(iterate.middle, total, iterate.pose)
+        acting = contact_wrench(iterate.middle, total, iterate.pose, dampers.couple)
         iterate = _evaluate(encounter, acting, iterate.place)
         used = dampers
         if update < MOST_FORCE_UPDATES:
@@ -104,10 +110,10 @@ def implicit_contact_step(encounter: Encounter[M]) -> Crossing[M]:
         wanted = (iterate.scale * spring - dampers.across * iterate.way)[
             :, None
         ] * iterate.middle.normal + dampers.along
-        if _converged(law, iterate, gap, wanted - total):
+        if _converged(law, iterate, gap, wanted - total) and _turned_as_wanted(law, iterate, size, used, dampers):
             wall_work = 0.0
             if wall_velocity is not None:
-                wall_work = size * float(np.sum(total * wall_velocity(start.body_b, centre(iterate.middle))))
+                wall_work = size * wall_power(wall_velocity, iterate.middle, total, used.couple)
             stored = _most_stored(encounter, iterate)
             _refuse_to_create(encounter, iterate, before.scale * spring, stored)
             return _crossing(iterate, used, size, wall_work, stored)
@@ -137,18 +143,23 @@ class _Iterate(NamedTuple, Generic[M]):
 
 class _Dampers(NamedTuple):
     """Forces of dampers, ``across``: force over way along the normal (m,) [force/length]; ``along``: force in the
-    surfaces (m, d)."""
+    surfaces (m, d); ``couple`` on ``body_a`` (m, k), None without any [force·length]."""
 
     across: FloatArray
     along: FloatArray
+    couple: FloatArray | None = None
+
+    def turning_loss(self, motion: Motion) -> float:
+        """Power that the couples take in this ``motion`` [energy/time]."""
+        return 0.0 if self.couple is None else -float(np.sum(self.couple * motion.angular_velocity))
 
 
 def _straight_on(encounter: Encounter[M]) -> _Iterate[M]:
     """First guess, which accepts overlaps: without contact forces, with all surfaces flat."""
-    _, dynamics, start, _, size, wall_velocity = encounter
+    law, dynamics, start, _, size, wall_velocity = encounter
     trial, none = dynamics.copied(), nothing(dynamics.pose)
     trial.kick(none, 0.5 * size)
-    motion = relative_motion(start, trial, wall_velocity)
+    motion = relative_motion(start, trial, wall_velocity, law.couples)
     way = size * _normal_part(motion.velocity, start)
     scale, compliance = np.ones(len(start)), _compliance(start, dynamics, size)
     place = dynamics.pose, dynamics.kinematics
@@ -168,10 +179,13 @@ def _evaluate(encounter: Encounter[M], wrench: Wrench, place: Kinematics) -> _It
     trial.kick(wrench, 0.5 * size, place)
     drift = kicked, drifted
     twist = _mean(drift if trial.resisted else (dynamics.motion_twist, *drift, trial.motion_twist))
-    velocity = relative_velocity(middle, pose, kinematics.component_twist(twist))
+    bodies = kinematics.component_twist(twist)
+    velocity = relative_velocity(middle, pose, bodies)
     if wall_velocity is not None:
         velocity -= wall_velocity(middle.body_b, centre(middle))
     motion = replace(motion, velocity=velocity)
+    if law.couples:
+        motion = replace(motion, angular_velocity=relative_angular_velocity(middle, bodies, wall_velocity))
     gap = contacts_at(trial.pose).gap
     if np.any(gap <= 0.0):
         raise _rejected("an overlap where they take the bodies")
@@ -191,17 +205,35 @@ def _dampers(law: ForceLaw, iterate: _Iterate[M], size: float) -> _Dampers:
         return _Dampers(np.zeros_like(iterate.way), np.zeros_like(iterate.middle.normal))
     speed, normal = _normal_part(iterate.motion.velocity, iterate.middle), iterate.middle.normal
     speed = np.where(speed == 0.0, 1.0, speed)
-    straight = law.damping(iterate.middle, replace(iterate.motion, velocity=speed[:, None] * normal))
-    whole = law.damping(iterate.middle, iterate.motion)
+    straight = law.damping(iterate.middle, Motion(speed[:, None] * normal, iterate.motion.mass))
+    whole, couple = evaluate_damping(law, iterate.middle, iterate.motion)
     along = whole - _normal_part(whole, iterate.middle)[:, None] * normal
-    return _Dampers(-_normal_part(straight, iterate.middle) / speed / size, along)
+    return _Dampers(-_normal_part(straight, iterate.middle) / speed / size, along, couple)
 
 
 def _converged(law: ForceLaw, iterate: _Iterate[M], gap: FloatArray, missing: FloatArray) -> bool:
     """Tell whether gaps match the prediction and the residual force displaces no body beyond tolerance."""
-    enough = TOLERANCE * law.range + _ROUNDING * np.abs(iterate.pose.position).max()
+    enough = _tolerance(law, iterate.pose)
     moved = iterate.compliance.diagonal() * np.linalg.norm(missing, axis=1)
     return bool(np.all(np.abs(iterate.gap - gap) <= enough) and np.all(moved <= enough))
+
+
+def _turned_as_wanted(law: ForceLaw, iterate: _Iterate[M], size: float, used: _Dampers, wanted: _Dampers) -> bool:
+    """Tell whether the residual couple turns no surface beyond tolerance."""
+    if used.couple is None or wanted.couple is None:
+        return True
+    pose, missing = iterate.pose, np.linalg.norm(wanted.couple - used.couple, axis=1)
+    lightest, turned = np.linalg.eigvalsh(iterate.dynamics.inverse_inertia)[:, -1], np.zeros(len(missing))
+    for body in (iterate.middle.body_a, iterate.middle.body_b):
+        on_body = np.flatnonzero(body < len(pose.position))
+        arm = np.linalg.norm(centre(iterate.middle)[on_body] - pose.position[body[on_body]], axis=1)
+        turned[on_body] += 0.5 * size**2 * arm * lightest[body[on_body]] * missing[on_body]
+    return bool(np.all(turned <= _tolerance(law, pose)))
+
+
+def _tolerance(law: ForceLaw, pose: Pose) -> float:
+    """Tolerance of the surfaces' positions [length]."""
+    return TOLERANCE * law.range + _ROUNDING * float(np.abs(pose.position).max())
 
 
 def _mean(twists: Sequence[Twist]) -> Twist:
@@ -245,6 +277,7 @@ def _refuse_to_create(encounter: Encounter[M], iterate: _Iterate[M], force: Floa
 def _crossing(iterate: _Iterate[M], dampers: _Dampers, size: float, wall_work: float, stored: float) -> Crossing[M]:
     """Result of a converged step; raise StepRejected if dampers that were not updated to the end would give energy."""
     lost = float(np.sum(dampers.across * iterate.way**2) - size * np.sum(dampers.along * iterate.motion.velocity))
+    lost += size * dampers.turning_loss(iterate.motion)
     if lost < 0.0:
         raise _rejected("dampers that would give energy")
     return Crossing(iterate.dynamics, iterate.wrench, lost, wall_work, stored)

@@ -213,7 +213,7 @@ def _reached(
         [np.arange(len(contacts)), parting]
     )  # those that part a second time, with no energy of motion
     energy = np.concatenate([approach.energy + stored, stored[parting]])
-    both, alike = select(contacts, rows), Motion(motion.velocity[rows], motion.mass[rows])
+    both, alike = select(contacts, rows), motion.select(rows)
     stiffness, damping = _greatest(law, both, alike, _deepest(law, both, energy, force[rows]))
     (stiffness, faded), (damping, faded_damping) = (
         np.split(column, [len(contacts)]) for column in (stiffness, damping)
@@ -243,17 +243,18 @@ def _greatest(law: ForceLaw, contacts: Contacts, motion: Motion, deepest: FloatA
     if law.dissipative:
         for there in contacts_on_the_way(law, contacts, deepest):
             for speed in _SPEEDS:
-                resisting = law.damping(there, replace(motion, velocity=speed * contacts.normal))
+                resisting = law.damping(there, Motion(speed * contacts.normal, motion.mass))
                 damping = np.maximum(damping, -np.sum(resisting * contacts.normal, axis=1) / speed)
     return greatest_stiffness(law, contacts, deepest), damping
 
 
-def relative_motion(contacts: Contacts, dynamics: BodyDynamics, wall_velocity: WallVelocities | None = None) -> Motion:
+def relative_motion(
+    contacts: Contacts, dynamics: BodyDynamics, wall_velocity: WallVelocities | None = None, turning: bool = False
+) -> Motion:
     """Velocity of a relative to b half-way between the m contact points, and the effective mass of the pair, zero where
-    both are prescribed.
+    both are prescribed; the relative angular velocity only if ``turning``.
 
-    ``wall_velocity`` gives the velocity (m, d) of sliding walls from surface numbers (m,) and points (m, d), None for
-    walls at rest [length/time]; walls have infinite mass.
+    ``wall_velocity`` gives the velocities of sliding walls, None for walls at rest; walls have infinite mass.
     """
     velocity = relative_velocity(contacts, dynamics.pose, dynamics.twist)
     if wall_velocity is not None:
@@ -261,7 +262,16 @@ def relative_motion(contacts: Contacts, dynamics: BodyDynamics, wall_velocity: W
     on_body = contacts.body_b < len(dynamics.pose.position)
     inverse = dynamics.inverse_mass_along(contacts.body_a, contacts.normal)
     inverse[on_body] += dynamics.inverse_mass_along(contacts.body_b[on_body], contacts.normal[on_body])
-    return Motion(velocity, _reciprocal(inverse))
+    if not turning:
+        return Motion(velocity, _reciprocal(inverse))
+    spin = relative_angular_velocity(contacts, dynamics.twist, wall_velocity)
+    return Motion(velocity, _reciprocal(inverse), spin)
+
+
+def relative_angular_velocity(contacts: Contacts, twist: Twist, wall_velocity: WallVelocities | None) -> FloatArray:
+    """Angular velocity of a relative to b, (m, k) [rad/time]; ``wall_velocity`` as in `relative_motion`."""
+    spin = _relative(twist.angular_velocity, contacts)
+    return spin if wall_velocity is None else spin - wall_velocity.angular_velocity(contacts.body_b, middle(contacts))
 
 
 def _reciprocal(inverse: FloatArray) -> FloatArray:
