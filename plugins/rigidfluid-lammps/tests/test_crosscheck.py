@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from dry_scenes import ball, dry_scene
+from rubbing_balls import RANGE, SPRING, STICKS_AND_SLIPS, TANGENTIAL_STIFFNESS, hard_to_turn, oblique_hit
 
 from rigidfluid.api import Pose, Scene, StepError, build_system
 from rigidfluid_lammps import CrosscheckError, Row, crosscheck
@@ -17,9 +18,7 @@ from rigidfluid_lammps.kinds import kinds
 from rigidfluid_lammps.theirs import build
 
 RADIUS = 0.1
-RANGE = 0.02
 WEAK = {"centre": 2e-7, "contact": 2e-8, "normal": 2e-6, "barrier": 1e-4}
-SPRING = {"law": "spring-dashpot", "range": RANGE, "stiffness": 1e5}
 RUBBING = SPRING | {"restitution": 0.7, "friction": 0.05, "tangential_damping": 1000.0}
 
 
@@ -96,22 +95,35 @@ def test_sliding_friction_turns_disks_alike() -> None:
     assert comparison.rows[0].spin <= 1e-8 * 200.0
 
 
-def oblique_hit(dimension: int, **keys: float) -> Row:
-    """Two balls of unequal weight that hit each other off centre, held by springs along their surfaces too."""
-    still = [0.0] * (dimension - 2)
-    left = ball([0.35, 0.5, *(0.5 + part for part in still)], [10.0, 0.0, *still])
-    right = ball([0.65, 0.58, *(0.5 + part for part in still)], [-10.0, 0.0, *still], density=2.0)
-    return only_row(dry_scene(SPRING | keys, left, right, end=0.012, step=1e-5))
+@needs_lammps
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_springs_along_surfaces_slip_alike(dimension: int) -> None:
+    slipping = {"friction": 0.05, "tangential_damping": 0.0, "tangential_stiffness": TANGENTIAL_STIFFNESS}
+    row, without = only_row(oblique_hit(dimension, **slipping)), only_row(oblique_hit(dimension))
+    assert_agrees(row)
+    assert row.spin <= 1e-8 * 200.0
+    assert abs(row.ours.energy - without.ours.energy) > 1e-3 * without.ours.energy
 
 
 @needs_lammps
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_springs_along_surfaces_slip_alike(dimension: int) -> None:
-    slipping = {"friction": 0.05, "tangential_damping": 0.0, "tangential_stiffness": 2.86e4}
-    row, without = oblique_hit(dimension, **slipping), oblique_hit(dimension)
-    assert_agrees(row)
-    assert row.spin <= 1e-8 * 200.0
-    assert abs(row.ours.energy - without.ours.energy) > 1e-3 * without.ours.energy
+@pytest.mark.parametrize("dashpot", [{}, {"restitution": 0.7}], ids=["spring", "e"])
+@pytest.mark.parametrize("friction", STICKS_AND_SLIPS.values(), ids=STICKS_AND_SLIPS)
+def test_springs_along_surfaces_of_balls_that_hardly_turn(
+    friction: float, dashpot: dict[str, float], dimension: int
+) -> None:
+    with hard_to_turn():
+        scene = oblique_hit(dimension, friction=friction, tangential_stiffness=TANGENTIAL_STIFFNESS, **dashpot)
+        assert_agrees(only_row(scene), tolerance=1e-10)
+
+
+@needs_lammps
+@pytest.mark.parametrize("friction", STICKS_AND_SLIPS.values(), ids=STICKS_AND_SLIPS)
+def test_springs_along_a_wall_of_a_ball_that_hardly_turns(friction: float) -> None:
+    contact = RUBBING | {"friction": friction, "tangential_stiffness": TANGENTIAL_STIFFNESS}
+    with hard_to_turn():
+        row = only_row(dry_scene(contact, ball([0.3, 0.5], [3.0, -10.0]), end=0.045, step=1e-5))
+    assert_agrees(row, tolerance=1e-10)
 
 
 @needs_lammps
@@ -121,7 +133,7 @@ def test_springs_along_surfaces_that_stick_differ_by_the_arm_alone(dimension: in
 
     def row(stiffness: float) -> Row:
         keys = {"stiffness": stiffness, "tangential_stiffness": 2.0 / 7.0 * stiffness}
-        return oblique_hit(dimension, friction=10.0, tangential_damping=0.0, **keys)
+        return only_row(oblique_hit(dimension, friction=10.0, tangential_damping=0.0, **keys))
 
     soft, hard = row(1e5), row(1.6e6)
     assert soft.spin / hard.spin == pytest.approx(4.0, rel=0.1)
