@@ -141,7 +141,7 @@ def joseph(stokes: float) -> float:
     return float(max(1.0 - 8.65 * stokes**-0.75, 0.0))
 
 
-GONDRET = (27.0, 0.0)
+GONDRET = (28.7, 0.48)
 """Stokes number of a measured rebound, and its speed over that before."""
 HEAD = ("body and loss", "St", "v at a gap of R/2 [cm/s]", "e", ".97 exp(-35/St)", ".97 (1 - 8.65 St^-.75)")
 HEAD += ("created [%]", "CPU time [s]")

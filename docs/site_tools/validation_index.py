@@ -16,7 +16,7 @@ SUBJECTS = {
         "ellipse_in_channel": "An ellipse in a narrow channel: how mesh, step and law affect its oscillations",
         "hundred_disks": "A hundred disks settle: a movie, energies and the cost",
         "falling_sphere": "A sphere falls in a box: height and speed compared with a published run",
-        "settling_spheres": "Spheres settle far from walls at Re 41, 280 and 360: speeds compared with Mordant and Pinton (2000)",
+        "settling_spheres": "Spheres settle at Re 41, 280 and 360: speeds compared with Mordant and Pinton (2000)",
         "rebound_over_stokes": "Rebound over the Stokes number from 5 to 1,000, in 3D and 2D",
         "ten_cate": "A sphere settles in oil and touches down: compared with the measurement of ten Cate et al. (2002)",
         "falling_ellipsoid": "An ellipsoid falls in a flat box: its path, and how it depends on the mesh",
