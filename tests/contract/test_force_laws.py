@@ -81,9 +81,9 @@ class TestSum(ForceLawContract):
 
 
 class TestLubrication(ForceLawContract):
-    @pytest.fixture
-    def law(self) -> ForceLaw:
-        return LubricationLaw(LubricationOptions(viscosity=0.1, cutoff=0.1 * RANGE), RANGE)
+    @pytest.fixture(params=[True, False], ids=["sliding", "squeezing"])
+    def law(self, request: pytest.FixtureRequest) -> ForceLaw:
+        return LubricationLaw(LubricationOptions(viscosity=0.1, cutoff=0.1 * RANGE, sliding=request.param), RANGE)
 
 
 class Declared(ForceLaw):

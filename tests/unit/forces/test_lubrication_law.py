@@ -1,18 +1,21 @@
+import bispherical
 import numpy as np
 import pytest
+from published import brenner, drag_of_approach
 from touching import NORMAL, contact
 
 from rigidfluid.core.model.types import Motion
 from rigidfluid.errors import SceneError
+from rigidfluid.forces.film_resistance import film_resistance
 from rigidfluid.forces.lubrication import LubricationLaw, LubricationOptions
 
 VISCOSITY, RADIUS = 0.7, 2.0
-# Brenner 1961: force on a sphere that moves onto a wall, over 6πμrV, by gap over radius.
-BRENNER = {0.1: 11.45916, 0.05: 21.58582, 0.01: 101.896}
+CENTRES = {"wall": np.inf, "equal": 1.0, "smaller": 0.5, "far smaller": 0.1, "larger": 3.0}
+"""Radius of b by that of a."""
 
 
-def law(range_: float, cutoff: float = 1e-9) -> LubricationLaw:
-    return LubricationLaw(LubricationOptions(viscosity=VISCOSITY, cutoff=cutoff), range_)
+def law(range_: float, cutoff: float = 1e-9, sliding: bool = True) -> LubricationLaw:
+    return LubricationLaw(LubricationOptions(viscosity=VISCOSITY, cutoff=cutoff, sliding=sliding), range_)
 
 
 def resistance(law: LubricationLaw, gap: float, radius_a: float, radius_b: float, dimension: int) -> float:
@@ -29,11 +32,87 @@ def cylinder_at_wall(gap: float) -> float:
     return float(4 * np.pi * VISCOSITY / (alpha - np.tanh(alpha)))
 
 
-@pytest.mark.parametrize("gap", [0.05, 0.01])
-def test_sphere_at_wall_grows_as_in_the_exact_solution(gap: float) -> None:
-    exact = 6 * np.pi * VISCOSITY * RADIUS * (BRENNER[gap] - BRENNER[0.1])
-    found = resistance(law(0.1 * RADIUS), gap * RADIUS, RADIUS, np.inf, 3)
-    assert found == pytest.approx(exact, rel=0.02)
+@pytest.mark.parametrize(("sliding", "within"), [(True, 1e-3), (False, 0.02)])
+@pytest.mark.parametrize("gap", [0.05, 0.01, 1e-3])
+def test_sphere_at_wall_grows_as_in_the_exact_solution(gap: float, sliding: bool, within: float) -> None:
+    exact = 6 * np.pi * VISCOSITY * RADIUS * (brenner(gap) - brenner(0.1))
+    found = resistance(law(0.1 * RADIUS, sliding=sliding), gap * RADIUS, RADIUS, np.inf, 3)
+    assert found == pytest.approx(exact, rel=within)
+
+
+@pytest.mark.parametrize("gap", [0.05, 0.01, 1e-3])
+def test_equal_spheres_grow_as_in_the_exact_solution(gap: float) -> None:
+    exact = 3 * np.pi * VISCOSITY * RADIUS * (drag_of_approach(gap) - drag_of_approach(0.1))
+    assert resistance(law(0.1 * RADIUS), gap * RADIUS, RADIUS, RADIUS, 3) == pytest.approx(exact, rel=4e-3)
+
+
+def along_and_turning(law: LubricationLaw, gap: float, radius_b: float) -> np.ndarray:
+    """Resistances (2, 2) to sliding across the plane of the normal, and to rolling n × w there."""
+    touching, across = contact(gap, RADIUS, radius_b, 3), np.array([[0.0, 0.0, 1.0]])
+    about = np.cross(across, touching.normal)
+    np.testing.assert_allclose(np.cross(touching.normal, about), across)
+    columns = []
+    for motion in (Motion(across, np.ones(1)), Motion(np.zeros((1, 3)), np.ones(1), about)):
+        force, couple = law.damping(touching, motion), law.couple(touching, motion)
+        np.testing.assert_allclose(force, np.sum(force * across) * across, atol=1e-12)
+        np.testing.assert_allclose(couple, np.sum(couple * about) * about, atol=1e-12)
+        columns.append([-np.sum(force * across), -np.sum(couple * about)])
+    return np.transpose(columns)
+
+
+@pytest.mark.parametrize("gap", [0.05, 0.01, 1e-3, 1e-4])
+@pytest.mark.parametrize("radius_b", CENTRES.values(), ids=CENTRES)
+def test_spheres_that_slide_and_roll_are_resisted_as_in_the_exact_solution(gap: float, radius_b: float) -> None:
+    """From a tenth of the effective radius on; the coupling is compared with the geometric mean of both others."""
+    size = 1.0 / (1.0 + 1.0 / radius_b)
+    found = along_and_turning(law(0.1 * size * RADIUS), gap * size * RADIUS, radius_b * RADIUS)
+    thin, thick = (bispherical.film_resistance(part * size, radius_b) for part in (gap, 0.1))
+    exact = VISCOSITY * (thin - thick) * RADIUS ** np.array([[1, 2], [2, 3]])
+    scale = np.sqrt(np.outer(exact.diagonal(), exact.diagonal()))
+    np.testing.assert_allclose(found / scale, exact / scale, rtol=0, atol=0.01)
+
+
+def test_disks_that_slide_and_roll_are_resisted_as_in_the_exact_solution() -> None:
+    """Jeffrey & Onishi 1981: a cylinder at a wall has the resistances 4πμ/α to motion and 4πμ r² coth α to turning,
+    cosh α = 1 + h/r, and no force by turning."""
+
+    def exact(gap: float) -> np.ndarray:
+        alpha, arm = np.arccosh(1.0 + gap), RADIUS * (1.0 + 0.5 * gap)
+        own = 4.0 * np.pi * VISCOSITY * np.diag([1.0 / alpha, RADIUS**2 / np.tanh(alpha)])
+        to_own = np.array([[1.0, -arm], [0.0, -1.0]])  # of U and ω from v and n × w
+        return np.asarray(to_own.T @ own @ to_own)
+
+    touching, expected = contact(1e-4 * RADIUS, RADIUS, np.inf), exact(1e-4) - exact(0.01)
+    along = np.array([[-0.8, 0.6]])
+    for column, motion in enumerate(
+        (Motion(along, np.ones(1)), Motion(np.zeros((1, 2)), np.ones(1), np.array([[-1.0]])))
+    ):
+        law_ = law(0.01 * RADIUS)
+        force, couple = law_.damping(touching, motion), law_.couple(touching, motion)
+        assert -np.sum(force * along) == pytest.approx(expected[0, column], rel=2e-3)
+        assert couple[0, 0] == pytest.approx(expected[1, column], rel=2e-3)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("unlike", [0.0, -0.5, -1.0, -1.8, -3.0, -10.0, -100.0])
+def test_no_motion_gains_energy_not_even_in_a_hollow(unlike: float, dimension: int) -> None:
+    """δ is below -1 there, which no term but the leading ones is for; at -1.8 they would give energy."""
+    radius = 0.5 * (1.0 - unlike)
+    inverse_b = 1.0 / radius - 1.0
+    radius_b = 1.0 / inverse_b if inverse_b else np.inf
+    for thin, thick in ((1e-3, 0.1), (0.15, 0.19), (0.1, 3.0)):
+        gaps = np.array([thin, thick]) * radius
+        film, end = (film_resistance(np.array([gap]), np.ones(1), np.array([radius_b]), dimension) for gap in gaps)
+        beyond = film.beyond(end)
+        assert min(beyond.squeezing[0], beyond.sliding[0], beyond.rolling[0]) > 0.0
+        assert beyond.coupling[0] ** 2 <= (1.0 + 1e-12) * beyond.sliding[0] * beyond.rolling[0]
+
+
+def test_spin_about_the_normal_is_free() -> None:
+    touching = contact(0.02, RADIUS, np.inf, 3)
+    motion = Motion(np.zeros((1, 3)), np.ones(1), touching.normal)
+    for answer in (law(0.1).damping, law(0.1).couple):
+        np.testing.assert_allclose(answer(touching, motion), 0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize("gap", [1e-2, 1e-4])
@@ -44,8 +123,10 @@ def test_cylinder_at_wall_grows_as_in_the_exact_solution(gap: float) -> None:
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_two_balls_are_one_of_the_effective_radius_at_a_wall(dimension: int) -> None:
-    pair = resistance(law(0.1), 0.02, 2.0, 0.5, dimension)
-    assert pair == pytest.approx(resistance(law(0.1), 0.02, 0.4, np.inf, dimension))
+    """Of the leading term, which is all in 2D."""
+    film = law(0.1, sliding=dimension == 2)
+    pair = resistance(film, 0.02, 2.0, 0.5, dimension)
+    assert pair == pytest.approx(resistance(film, 0.02, 0.4, np.inf, dimension))
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -55,10 +136,12 @@ def test_saturates_below_the_cutoff(dimension: int) -> None:
     assert found[1:] == [found[1]] * 4
 
 
-def test_sliding_is_free() -> None:
-    motion = Motion(np.array([[-0.8, 0.6]]), np.ones(1))
-    pushed = law(0.1).damping(contact(0.02, RADIUS, np.inf), motion)
-    np.testing.assert_allclose(pushed, np.zeros_like(NORMAL), atol=1e-12)
+def test_sliding_is_free_where_the_table_says_so() -> None:
+    motion = Motion(np.array([[-0.8, 0.6]]), np.ones(1), np.ones((1, 1)))
+    film = law(0.1, sliding=False)
+    assert not film.couples
+    np.testing.assert_allclose(film.damping(contact(0.02, RADIUS, np.inf), motion), np.zeros_like(NORMAL), atol=1e-12)
+    assert not film.couple(contact(0.02, RADIUS, np.inf), motion).any()
 
 
 def test_cutoff_beyond_range_is_refused() -> None:
@@ -68,4 +151,6 @@ def test_cutoff_beyond_range_is_refused() -> None:
 
 def test_a_gap_of_unknown_curvature_is_refused() -> None:
     with pytest.raises(SceneError, match="surfaces 0 and 2, whose gap has no known curvature"):
+        resistance(law(0.1, sliding=False), 0.02, np.nan, np.inf, 2)
+    with pytest.raises(SceneError, match="surfaces 0 and 2, not both round"):
         resistance(law(0.1), 0.02, np.nan, np.inf, 2)

@@ -33,7 +33,7 @@ class DryScheme:
         if system.law is None:
             path = fly_freely(system, dynamics, size)
         elif system.implicit:
-            path, dynamics = implicit_free(system, system.law, dynamics, size)
+            path, dynamics = implicit_free(system, system.law, dynamics, size, state.springs)
         else:
             sight = look_ahead(system, dynamics, size)
             path = SubstepPath(system, system.law, dynamics, size, state.springs).advance(sight)

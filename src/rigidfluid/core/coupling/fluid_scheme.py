@@ -75,7 +75,7 @@ class FluidScheme(ABC):
         dynamics = system.motions.carry(system.joints.over(unlinked, start), start)
         unlinked.vary_load(size, self._varying(state, dynamics, near, size))
         if system.implicit:
-            path = implicit_coupled(system, system.law, dynamics, near, size)
+            path = implicit_coupled(system, system.law, dynamics, near, size, state.springs)
         else:
             sight = system.detection.look_ahead(ExtrapolatedContacts(near, state.pose), dynamics, size)
             path = SubstepPath(system, system.law, dynamics, size, state.springs).advance(sight)

@@ -39,6 +39,8 @@ class ForceLaw(Part):
     kind: ClassVar[str] = "force law"
     range: float
     balls_only: ClassVar[bool] = False
+    round_option: str = ""
+    """Key of its table by which it is for round and flat surfaces alone; false, it is for any. Empty without such."""
     film: bool = False
     """Tell whether it resists as a film that no mesh resolves: it reads `Contacts.effective_radius`, which balls,
     ellipses and ellipsoids have."""

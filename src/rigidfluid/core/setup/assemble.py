@@ -53,7 +53,7 @@ def assemble(model: Model) -> System:
     motions = motions.starting_with(joints.fitting(motions.pose, motions.twist, 0.0))
     loads = build_loads(model, masses, motions, joints)
     interactions = interactions_of(model.named_laws, model.surfaces, loads)
-    check_interactions(interactions, model.stepping)
+    check_interactions(interactions, model.stepping, model.shapes, model.walls)
     chosen, why = model.detection
     detector, law = chosen.part(chosen.options, model.shapes, model.walls), acting_together(interactions)
     backend = model.fluid.backend

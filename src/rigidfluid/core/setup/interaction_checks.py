@@ -12,26 +12,53 @@ from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
+    from rigidfluid.core.geometry.wall import Wall
+    from rigidfluid.core.model.body import Body
     from rigidfluid.core.setup.model import ContactStepping
 
 
-def check_interactions(interactions: Sequence[Interaction], stepping: ContactStepping) -> None:
-    """Refuse, with SceneError, laws that would hold the same displacement along surfaces, or count a film twice."""
-    _check_sticking(interactions, stepping)
+def check_interactions(
+    interactions: Sequence[Interaction], stepping: ContactStepping, bodies: Sequence[Body], walls: Sequence[Wall]
+) -> None:
+    """Refuse, with SceneError, laws that would hold the same displacement along surfaces, or count a film twice, and
+    those with an option that the shapes of their ``bodies`` or ``walls`` do not allow."""
+    _check_sticking(interactions)
+    _check_rolling(interactions, stepping)
     _check_films(interactions)
+    for interaction in interactions:
+        if interaction.law.round_option:
+            _check_round(interaction, bodies, walls)
 
 
-def _check_sticking(interactions: Sequence[Interaction], stepping: ContactStepping) -> None:
-    """Refuse two laws with springs along the surfaces in one contact, and such a law in implicit steps."""
+def _check_round(interaction: Interaction, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
+    """Refuse the option of a law for round surfaces where it meets others."""
+    radius = dict(enumerate(body.radius for body in bodies))
+    if interaction.between != "pairs":
+        radius |= {wall.surface: wall.shape.radius for wall in walls}
+    met = interaction.surfaces if len(interaction.surfaces) == 2 else tuple(radius)
+    if any(radius.get(surface) is None for surface in met):
+        field = f"{interaction.field}.{interaction.law.round_option}"
+        found = f"true for {interaction.law.name!r} with surfaces that are neither round nor flat"
+        remedy = "Set it to false, or keep the law to other contacts by `between` or `names`."
+        raise SceneError(field, found, "balls, and flat or round walls", remedy)
+
+
+def _check_sticking(interactions: Sequence[Interaction]) -> None:
+    """Refuse two laws with springs along the surfaces in one contact."""
     sticking = [interaction for interaction in interactions if interaction.law.sticking]
     for one, other in combinations(sticking, 2):
         if _may_meet(one, other):
             found, allowed = f"a spring along surfaces that {one.field} has one along too", "one such law in a contact"
             remedy = "Keep them to different contacts by `between` or `names`."
             raise SceneError(f"{other.field}.law", found, allowed, remedy)
-    if sticking and stepping.implicit:
-        found, allowed = "'implicit' with springs along the surfaces", "'substeps'"
-        raise SceneError("contact.stepping", found, allowed, "Leave it out, or remove `tangential_stiffness`.")
+
+
+def _check_rolling(interactions: Sequence[Interaction], stepping: ContactStepping) -> None:
+    """Refuse springs that resist turning in implicit steps, which take couples from the iteration before."""
+    if stepping.implicit and any(interaction.law.rolling for interaction in interactions):
+        found, allowed = "'implicit' with springs that resist rolling or twisting", "'substeps'"
+        remedy = "Leave it out, or remove `rolling_friction` and `twisting_friction`."
+        raise SceneError("contact.stepping", found, allowed, remedy)
 
 
 def _check_films(interactions: Sequence[Interaction]) -> None:

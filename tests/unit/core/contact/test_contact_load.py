@@ -25,15 +25,27 @@ LAW = {"law": "spring-dashpot", "range": 0.02, "stiffness": 400.0, "damping": 1.
 BELT = {"on": "bottom", "type": "wall", "velocity": [0.6, 0.0]}
 
 
-@pytest.mark.parametrize("boundary", [[], [BELT]], ids=["still", "belt"])
-def test_drives_and_belts_give_what_bodies_gain_dampers_take_and_springs_store(boundary: list[dict[str, Any]]) -> None:
-    scene = scene_from_dict(dry_tables(*BODIES, contact=LAW, boundary=boundary))
+FILM = {"law": "lubrication", "range": 0.02, "viscosity": 0.3, "cutoff": 1e-3}
+DRUM = {"on": "drum", "type": "wall", "angular_velocity": 7.0, "centre": [0.4, 0.285]}
+ROUND = {"name": "drum", "type": "sphere", "radius": 0.1, "position": [0.4, 0.285]}
+CHANNEL = {"type": "channel", "lower": [0.0, 0.0], "upper": [1.0, 1.0], "obstacle": [ROUND]}
+
+
+@pytest.mark.parametrize("law", [LAW, FILM], ids=["springs", "film"])
+@pytest.mark.parametrize("boundary", [[], [BELT], [BELT, DRUM]], ids=["still", "belt", "belt and drum"])
+def test_drives_and_belts_give_what_bodies_gain_dampers_take_and_springs_store(
+    boundary: list[dict[str, Any]], law: dict[str, Any]
+) -> None:
+    domain = {"domain": CHANNEL} if DRUM in boundary else {}
+    scene = scene_from_dict(dry_tables(*BODIES, contact=law, boundary=boundary, **domain))
     system, run = build_system(scene), Simulation(scene)
     assert system.law is not None
     dynamics = scheme_of(system).bodies_now(run.state, 0.0)
     contacts = look_ahead(system, dynamics, 1e-3).contacts_at(dynamics.pose)
-    assert np.sum(contacts.gap < 0.02) >= 3
+    assert np.sum(contacts.gap < 0.02) >= 3 + (DRUM in boundary)
     load = contact_load(system, system.law, contacts, dynamics)
+    assert load.damping is not None
+    assert (load.damping.couple is not None) == (law is FILM)
     gained = power(load.wrench, dynamics.twist)[0]
     step = 1e-6
     before = system.law.energy(contacts).sum()

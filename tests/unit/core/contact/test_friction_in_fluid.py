@@ -41,8 +41,8 @@ def disk_on_slope(end, step=4e-3, output=None, mesh=None, **keys):
 
 
 @cache
-def held(step, stiffness=SPRING["tangential_stiffness"]):
-    simulation = Simulation(disk_on_slope(0.1, step, tangential_stiffness=stiffness), None, False)
+def held(step, stiffness=SPRING["tangential_stiffness"], stepping="substeps"):
+    simulation = Simulation(disk_on_slope(0.1, step, tangential_stiffness=stiffness, stepping=stepping), None, False)
     while not simulation.ended:
         simulation.step()
     return simulation.state
@@ -78,3 +78,11 @@ def test_it_is_resumed_after_new_meshes_with_the_same_bits(tmp_path):
         np.testing.assert_array_equal(getattr(whole.springs, name), getattr(resumed.springs, name))
     np.testing.assert_array_equal(whole.pose.position, resumed.pose.position)
     assert whole.ledger == resumed.ledger
+
+
+@pytest.mark.long
+def test_implicit_steps_hold_it_alike():
+    state, resolved = held(4e-3, stepping="implicit"), held(4e-3)
+    assert abs(state.ledger.residual) < 5e-3 * abs(state.ledger.gravity)
+    np.testing.assert_allclose(state.springs.displacement, resolved.springs.displacement, rtol=5e-3)
+    assert state.ledger.contact_loss == pytest.approx(resolved.ledger.contact_loss, rel=5e-3)

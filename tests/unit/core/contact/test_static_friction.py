@@ -121,8 +121,3 @@ def test_one_for_walls_and_one_for_pairs_act_as_one():
     scenes[1] = scenes[1] | {"contact": {}, "interaction": lists}
     one, both = (ended(scene_from_dict(scene)) for scene in scenes)
     np.testing.assert_array_equal(one.pose.position, both.pose.position)
-
-
-def test_implicit_steps_are_refused():
-    with pytest.raises(SceneError, match=r"contact\.stepping"):
-        build_system(block_on_slope(0.9, end=0.1, stepping="implicit"))

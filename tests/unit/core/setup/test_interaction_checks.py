@@ -2,6 +2,7 @@
 
 import pytest
 from extreme_scenes import wet_hit
+from scenes import dry_tables
 
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
@@ -27,3 +28,21 @@ def test_a_film_is_not_counted_twice(rough: str, film: str) -> None:
 def test_a_film_law_may_act_in_other_contacts() -> None:
     system = build_system(scene("walls", "pairs"))
     assert [interaction.law.film for interaction in system.interactions] == [False, True]
+
+
+ELLIPSE = {"name": "ellipse", "type": "ellipsoid", "semi_axes": [0.1, 0.05], "density": 1.0, "position": [0.5, 0.7]}
+
+
+@pytest.mark.parametrize(
+    ("where", "refused"),
+    [({}, True), ({"between": "pairs"}, True), ({"names": ["disk"]}, True), ({"names": ["disk", "bottom"]}, False)],
+)
+def test_a_film_that_resists_sliding_is_for_round_surfaces(where: dict, refused: bool) -> None:
+    disk = {"name": "disk", "type": "sphere", "radius": 0.1, "density": 1.0, "position": [0.5, 0.3]}
+    scene = scene_from_dict(dry_tables(disk, ELLIPSE) | {"interaction": [FILM | where]})
+    if refused:
+        with pytest.raises(SceneError, match=r"Set it to false, or keep the law") as told:
+            build_system(scene)
+        assert told.value.subject == "interaction.0.sliding"
+        scene = scene_from_dict(dry_tables(disk, ELLIPSE) | {"interaction": [FILM | where | {"sliding": False}]})
+    assert build_system(scene).law is not None

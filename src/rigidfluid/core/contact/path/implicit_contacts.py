@@ -8,9 +8,19 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
+from rigidfluid.core.contact.pairs.carried_springs import carried_displacement, springs_at, transported
 from rigidfluid.core.contact.path.contact_load import evaluate_damping, wall_power
 from rigidfluid.core.contact.path.contact_newton import MOST_DENSE, Problem, contact_forces
-from rigidfluid.core.contact.path.delassus import delassus
+from rigidfluid.core.contact.path.delassus import delassus, delassus_of_points
+from rigidfluid.core.contact.path.implicit_friction import (
+    Condensed,
+    Rubbing,
+    Slip,
+    condensed,
+    no_rubbing,
+    rubbing,
+    with_mean_gaps,
+)
 from rigidfluid.core.contact.path.substep import (
     JUST_IN,
     relative_angular_velocity,
@@ -24,6 +34,7 @@ from rigidfluid.core.model.contacts import middle as centre
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.kinematics import Kinematics
+from rigidfluid.core.model.tangential_springs import TangentialSprings, spring_energy
 from rigidfluid.core.model.types import Contacts, Motion, Pose, Twist, Wrench
 from rigidfluid.errors import StepRejected
 
@@ -33,6 +44,9 @@ MOST_UPDATES = 40
 MOST_FORCE_UPDATES = 20
 """Update after which dampers, and the scale that makes the work exact, are kept: a damper that switches on at the
 range, or a displacement close to zero, may have no value that fits."""
+
+SLOPE_UPDATES = 8
+"""Update after which friction is followed by secants: tangents may change between stick and slip for ever."""
 
 TOLERANCE = 1e-10
 """Tolerance of the surfaces' positions at the end against those that the forces give, over the range."""
@@ -54,7 +68,7 @@ class Encounter(NamedTuple, Generic[M]):
 
     ``start`` are the m contacts that may come into range of the ``law`` in the step of this ``size`` Δt [time],
     ``contacts_at`` gives the same contacts, in the same order, at another pose; ``wall_velocity`` is as in
-    `relative_motion`, None for walls at rest.
+    `relative_motion`, None for walls at rest; ``springs`` are those along surfaces, None without any.
     """
 
     law: ForceLaw
@@ -63,17 +77,20 @@ class Encounter(NamedTuple, Generic[M]):
     contacts_at: Callable[[Pose], Contacts]
     size: float
     wall_velocity: WallVelocities | None
+    springs: TangentialSprings | None = None
 
 
 class Crossing(NamedTuple, Generic[M]):
     """Result of a step: the bodies' ``dynamics`` at its end, the contacts' mean ``wrench``, the energy ``lost``, the
-    ``wall_work`` done on the bodies by sliding walls, and the energy ``stored`` in bodies and contacts [energy]."""
+    ``wall_work`` done on the bodies by sliding walls, the energy ``stored`` in bodies and contacts [energy], and the
+    ``springs`` along surfaces at the end, None without any."""
 
     dynamics: M
     wrench: Wrench
     lost: float
     wall_work: float
     stored: float
+    springs: TangentialSprings | None
 
 
 def implicit_contact_step(encounter: Encounter[M]) -> Crossing[M]:
@@ -93,30 +110,37 @@ def implicit_contact_step(encounter: Encounter[M]) -> Crossing[M]:
     law, start, size, wall_velocity = encounter.law, encounter.start, encounter.size, encounter.wall_velocity
     iterate = _straight_on(encounter)
     force, gap, dampers = np.zeros(len(start)), start.gap, _dampers(law, iterate, size)
+    rub = no_rubbing(dampers.along)
+    along = rub.force
     for update in range(MOST_UPDATES):
-        offset, free = iterate.way - iterate.gap, iterate.gap - iterate.compliance @ force
-        problem = Problem(law, start, free, iterate.compliance, iterate.scale, dampers.across, offset)
+        response = _response(law, iterate, rub, force, along)
+        offset = iterate.way - iterate.gap
+        problem = Problem(law, start, response.free, response.compliance, iterate.scale, dampers.across, offset)
         force, gap = contact_forces(problem, force, gap)
         spring = (force + dampers.across * (gap + offset)) / iterate.scale
-        total = force[:, None] * iterate.middle.normal + dampers.along
+        along = response.along(force)
+        total = force[:, None] * iterate.middle.normal + along
         before = iterate
         acting = contact_wrench(iterate.middle, total, iterate.pose, dampers.couple)
         iterate = _evaluate(encounter, acting, iterate.place)
-        used = dampers
+        used = dampers._replace(along=along)
         if update < MOST_FORCE_UPDATES:
             dampers = _dampers(law, iterate, size)
         else:
             iterate = iterate._replace(scale=before.scale)
-        wanted = (iterate.scale * spring - dampers.across * iterate.way)[
-            :, None
-        ] * iterate.middle.normal + dampers.along
+        rub = no_rubbing(dampers.along)
+        if law.sticking:
+            slip = Slip(iterate.motion, size, along, update >= SLOPE_UPDATES)
+            rub = _rubbing(encounter, iterate, gap, spring, slip)
+        wanted = (iterate.scale * spring - dampers.across * iterate.way)[:, None] * iterate.middle.normal + rub.force
         if _converged(law, iterate, gap, wanted - total) and _turned_as_wanted(law, iterate, size, used, dampers):
             wall_work = 0.0
             if wall_velocity is not None:
                 wall_work = size * wall_power(wall_velocity, iterate.middle, total, used.couple)
             stored = _most_stored(encounter, iterate)
             _refuse_to_create(encounter, iterate, before.scale * spring, stored)
-            return _crossing(iterate, used, size, wall_work, stored)
+            springs = _springs(encounter, iterate, rub)
+            return _crossing(encounter, iterate, used, springs, wall_work, stored)
         gap = iterate.gap
     raise _rejected(f"no forces after {MOST_UPDATES} updates of the normals")
 
@@ -125,8 +149,8 @@ class _Iterate(NamedTuple, Generic[M]):
     """Bodies and contacts under some forces.
 
     ``dynamics`` at the end; ``pose``, ``place`` on the motions, contacts and mean motion in mid-step; ``way`` n·Δx and
-    ``gap`` at the end (m,) [length]; ``scale`` (g₁ - g₀)/(n·Δx) (m,) [1]; ``compliance`` Δt²/2 D (m, m) [length/force];
-    the ``wrench``.
+    ``gap`` at the end (m,) [length]; ``scale`` (g₁ - g₀)/(n·Δx) (m,) [1]; ``compliance`` Δt²/2 D (m, m) of the gaps, or
+    (d·m, d·m) of all ways where springs stick [length/force]; the ``wrench``.
     """
 
     dynamics: M
@@ -143,7 +167,8 @@ class _Iterate(NamedTuple, Generic[M]):
 
 class _Dampers(NamedTuple):
     """Forces of dampers, ``across``: force over way along the normal (m,) [force/length]; ``along``: force in the
-    surfaces (m, d); ``couple`` on ``body_a`` (m, k), None without any [force·length]."""
+    surfaces (m, d), zero where springs and dampers there are solved together; ``couple`` on ``body_a`` (m, k), None
+    without any [force·length]."""
 
     across: FloatArray
     along: FloatArray
@@ -156,24 +181,24 @@ class _Dampers(NamedTuple):
 
 def _straight_on(encounter: Encounter[M]) -> _Iterate[M]:
     """First guess, which accepts overlaps: without contact forces, with all surfaces flat."""
-    law, dynamics, start, _, size, wall_velocity = encounter
+    law, dynamics, start, _, size, wall_velocity, _ = encounter
     trial, none = dynamics.copied(), nothing(dynamics.pose)
     trial.kick(none, 0.5 * size)
     motion = relative_motion(start, trial, wall_velocity, law.couples)
     way = size * _normal_part(motion.velocity, start)
-    scale, compliance = np.ones(len(start)), _compliance(start, dynamics, size)
+    scale, compliance = np.ones(len(start)), _compliance(law, start, dynamics, size)
     place = dynamics.pose, dynamics.kinematics
     return _Iterate(trial, *place, start, motion, way, start.gap + way, scale, compliance, none)
 
 
 def _evaluate(encounter: Encounter[M], wrench: Wrench, place: Kinematics) -> _Iterate[M]:
-    law, dynamics, start, contacts_at, size, wall_velocity = encounter
+    law, dynamics, start, contacts_at, size, wall_velocity, _ = encounter
     trial = dynamics.copied()
     trial.kick(wrench, 0.5 * size, place)
     kicked = trial.motion_twist
     trial.drift(0.5 * size)
     pose, kinematics, middle = trial.pose, trial.kinematics, contacts_at(trial.pose)
-    motion, compliance = relative_motion(middle, trial, wall_velocity), _compliance(middle, trial, size)
+    motion, compliance = relative_motion(middle, trial, wall_velocity), _compliance(law, middle, trial, size)
     trial.drift(0.5 * size)
     drifted = trial.motion_twist
     trial.kick(wrench, 0.5 * size, place)
@@ -195,9 +220,35 @@ def _evaluate(encounter: Encounter[M], wrench: Wrench, place: Kinematics) -> _It
     return _Iterate(trial, pose, kinematics, middle, motion, way, gap, np.clip(scale, *_SCALES), compliance, wrench)
 
 
-def _compliance(contacts: Contacts, dynamics: BodyDynamics, size: float) -> Any:
-    matrix = 0.5 * size**2 * delassus(contacts, dynamics, 0.5 * size)
+def _compliance(law: ForceLaw, contacts: Contacts, dynamics: BodyDynamics, size: float) -> Any:
+    responses = delassus_of_points if law.sticking else delassus
+    matrix = 0.5 * size**2 * responses(contacts, dynamics, 0.5 * size)
     return matrix.toarray() if len(contacts) <= MOST_DENSE else matrix
+
+
+def _response(law: ForceLaw, iterate: _Iterate[M], rub: Rubbing, force: FloatArray, along: FloatArray) -> Condensed:
+    """Forces along the surfaces as they depend on those across them, or as they are where nothing sticks."""
+    if law.sticking:
+        return condensed(iterate.compliance, iterate.middle, rub, iterate.gap, force, along)
+    return Condensed(iterate.compliance, iterate.gap - iterate.compliance @ force, rub.force)
+
+
+def _rubbing(encounter: Encounter[M], iterate: _Iterate[M], gap: FloatArray, spring: FloatArray, slip: Slip) -> Rubbing:
+    """Forces of springs along the surfaces, where the mean forces ``spring`` (m,) lead to the ``gap`` (m,)."""
+    law, dynamics, start = encounter.law, encounter.dynamics, encounter.start
+    held = carried_displacement(encounter.springs, start, dynamics.pose)
+    middle = with_mean_gaps(law, start, iterate.middle, gap, spring)
+    held = transported(held, start.normal, middle.normal)
+    return rubbing(law, middle, replace(middle, gap=iterate.gap), held, slip)
+
+
+def _springs(encounter: Encounter[M], iterate: _Iterate[M], rub: Rubbing) -> TangentialSprings | None:
+    """Springs along the surfaces at the end, None where all are relaxed."""
+    if not encounter.law.sticking:
+        return None
+    stiffness = encounter.law.tangential_stiffness(replace(iterate.middle, gap=iterate.gap))
+    springs = springs_at(iterate.middle, rub.displacement, stiffness, iterate.pose)
+    return springs if len(springs) else None
 
 
 def _dampers(law: ForceLaw, iterate: _Iterate[M], size: float) -> _Dampers:
@@ -206,15 +257,18 @@ def _dampers(law: ForceLaw, iterate: _Iterate[M], size: float) -> _Dampers:
     speed, normal = _normal_part(iterate.motion.velocity, iterate.middle), iterate.middle.normal
     speed = np.where(speed == 0.0, 1.0, speed)
     straight = law.damping(iterate.middle, Motion(speed[:, None] * normal, iterate.motion.mass))
+    across = -_normal_part(straight, iterate.middle) / speed / size
     whole, couple = evaluate_damping(law, iterate.middle, iterate.motion)
-    along = whole - _normal_part(whole, iterate.middle)[:, None] * normal
-    return _Dampers(-_normal_part(straight, iterate.middle) / speed / size, along, couple)
+    if law.sticking:
+        return _Dampers(across, np.zeros_like(normal), couple)
+    return _Dampers(across, whole - _normal_part(whole, iterate.middle)[:, None] * normal, couple)
 
 
 def _converged(law: ForceLaw, iterate: _Iterate[M], gap: FloatArray, missing: FloatArray) -> bool:
     """Tell whether gaps match the prediction and the residual force displaces no body beyond tolerance."""
     enough = _tolerance(law, iterate.pose)
-    moved = iterate.compliance.diagonal() * np.linalg.norm(missing, axis=1)
+    softest = iterate.compliance.diagonal().reshape(-1, len(gap)).max(axis=0)
+    moved = softest * np.linalg.norm(missing, axis=1)
     return bool(np.all(np.abs(iterate.gap - gap) <= enough) and np.all(moved <= enough))
 
 
@@ -274,13 +328,23 @@ def _refuse_to_create(encounter: Encounter[M], iterate: _Iterate[M], force: Floa
         raise _rejected(f"energy of {created:.1e} from nowhere, as bodies turn too far")
 
 
-def _crossing(iterate: _Iterate[M], dampers: _Dampers, size: float, wall_work: float, stored: float) -> Crossing[M]:
-    """Result of a converged step; raise StepRejected if dampers that were not updated to the end would give energy."""
-    lost = float(np.sum(dampers.across * iterate.way**2) - size * np.sum(dampers.along * iterate.motion.velocity))
-    lost += size * dampers.turning_loss(iterate.motion)
-    if lost < 0.0:
+def _crossing(
+    encounter: Encounter[M],
+    iterate: _Iterate[M],
+    dampers: _Dampers,
+    springs: TangentialSprings | None,
+    wall_work: float,
+    stored: float,
+) -> Crossing[M]:
+    """Result of a converged step; raise StepRejected if dampers that were not updated to the end would give energy, or
+    springs along the surfaces more than by their tolerance."""
+    rubbed = -encounter.size * float(np.sum(dampers.along * iterate.motion.velocity))
+    stretched = spring_energy(springs) - spring_energy(encounter.springs)
+    lost = float(np.sum(dampers.across * iterate.way**2)) + rubbed - stretched
+    lost += encounter.size * dampers.turning_loss(iterate.motion)
+    if lost < (-KEPT * stored if encounter.law.sticking else 0.0):
         raise _rejected("dampers that would give energy")
-    return Crossing(iterate.dynamics, iterate.wrench, lost, wall_work, stored)
+    return Crossing(iterate.dynamics, iterate.wrench, lost, wall_work, stored, springs)
 
 
 def _normal_part(vector: FloatArray, contacts: Contacts) -> FloatArray:

@@ -16,6 +16,7 @@ from rigidfluid.core.model.detection import FollowedContacts
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.system import System
+from rigidfluid.core.model.tangential_springs import TangentialSprings, spring_energy
 from rigidfluid.core.model.types import Contacts, Pose, Twist, Wrench
 from rigidfluid.errors import StepRejected
 
@@ -25,13 +26,16 @@ IMPLICIT_PARTS = 8
 """Number of implicit steps of the bodies in one step of a fluid."""
 
 
-def implicit_free(system: System, law: ForceLaw, dynamics: BodyDynamics, size: float) -> tuple[BodyStep, BodyDynamics]:
-    """Advance without a fluid, by one implicit step or as many as springs need; return also the dynamics at the end."""
+def implicit_free(
+    system: System, law: ForceLaw, dynamics: BodyDynamics, size: float, springs: TangentialSprings | None
+) -> tuple[BodyStep, BodyDynamics]:
+    """Advance without a fluid, by one implicit step or as many as springs of joints need; return also the dynamics at
+    the end. ``springs``: those along surfaces at the start."""
     parts = spring_parts(system, size)
-    path, dynamics = _implicit_or_free(system, law, dynamics, size / parts)
+    path, dynamics = _implicit_or_free(system, law, dynamics, size / parts, springs)
     for _ in range(1, parts):
         before = path
-        path, dynamics = _implicit_or_free(system, law, dynamics, size / parts)
+        path, dynamics = _implicit_or_free(system, law, dynamics, size / parts, before.springs)
         impulse = add_wrench(path.impulse, before.impulse, 1.0)
         path = replace(
             path,
@@ -45,17 +49,24 @@ def implicit_free(system: System, law: ForceLaw, dynamics: BodyDynamics, size: f
 
 
 def _implicit_or_free(
-    system: System, law: ForceLaw, dynamics: BodyDynamics, size: float
+    system: System, law: ForceLaw, dynamics: BodyDynamics, size: float, springs: TangentialSprings | None
 ) -> tuple[BodyStep, BodyDynamics]:
     """Advance by one implicit step, or freely where nothing may come into range; return also the dynamics at its
     end."""
     contacts = foreseen(system, law, dynamics, size, 0.0)
     if len(contacts.start) == 0:
-        return fly_freely(system, dynamics, size), dynamics
-    return _implicit_step(system, law, dynamics, contacts.start, contacts, size)
+        return replace(fly_freely(system, dynamics, size), dissipated=spring_energy(springs)), dynamics
+    return _implicit_step(system, law, dynamics, contacts.start, contacts, size, springs)
 
 
-def implicit_coupled(system: System, law: ForceLaw, dynamics: BodyDynamics, near: Contacts, size: float) -> BodyStep:
+def implicit_coupled(
+    system: System,
+    law: ForceLaw,
+    dynamics: BodyDynamics,
+    near: Contacts,
+    size: float,
+    springs: TangentialSprings | None,
+) -> BodyStep:
     """Advance in a fluid, by several implicit steps in one of the fluid's: an impact is then short compared with that,
     and drag acts before and after it.
 
@@ -69,12 +80,13 @@ def implicit_coupled(system: System, law: ForceLaw, dynamics: BodyDynamics, near
         start, followed = system.detection.followed(at_start, law, dynamics, part, reach)
         if len(start) == 0:
             fly_freely(system, dynamics, part)
+            lost, springs = lost + spring_energy(springs), None
             continue
-        path, dynamics = _implicit_step(system, law, dynamics, start, followed, part)
+        path, dynamics = _implicit_step(system, law, dynamics, start, followed, part, springs)
         impulse = add_wrench(impulse, path.impulse, 1.0)
-        lost, actuator_work = lost + path.dissipated, actuator_work + path.actuator_work
+        lost, actuator_work, springs = lost + path.dissipated, actuator_work + path.actuator_work, path.springs
     path = arrived(dynamics, impulse, lost, actuator_work, IMPLICIT_PARTS)
-    return replace(path, friction=dynamics.friction_loss)
+    return replace(path, friction=dynamics.friction_loss, springs=springs)
 
 
 def _implicit_step(
@@ -84,12 +96,13 @@ def _implicit_step(
     start: Contacts,
     followed: FollowedContacts,
     size: float,
+    springs: TangentialSprings | None,
 ) -> tuple[BodyStep, M]:
     """Advance by one implicit step with the contacts ``followed``, at its start ``start``; return also the dynamics at
     its end."""
-    encounter = Encounter(law, dynamics, start, followed.extrapolate, size, system.wall_velocity)
+    encounter = Encounter(law, dynamics, start, followed.extrapolate, size, system.wall_velocity, springs)
     crossing = implicit_contact_step(encounter)
-    end, wrench, lost, wall_work, stored = crossing
+    end, wrench, lost, wall_work, stored, springs = crossing
     _refuse_unseen(law, followed, end.pose, KEPT * stored)
     impulse = Wrench(size * wrench.force, size * wrench.torque)
     before, after = (each.prescribed_part(system.motions.prescribed) for each in (dynamics, end))
@@ -98,7 +111,7 @@ def _implicit_step(
         0.5 * (before.angular_velocity + after.angular_velocity),
     )
     actuator_work = wall_work - float(power(impulse, mean)[prescribed_bodies(system)].sum())
-    return arrived(end, impulse, lost, actuator_work, 1), end
+    return replace(arrived(end, impulse, lost, actuator_work, 1), springs=springs), end
 
 
 def _refuse_unseen(law: ForceLaw, followed: FollowedContacts, end: Pose, allowed: float) -> None:

@@ -182,6 +182,8 @@ def _resolved(law: ForceLaw, contacts: Contacts, dynamics: BodyDynamics, approac
     if push.rates is not None and not law.sticking:
         swing = min(swing, float((push.rates @ stiffness).max()))
     rate = max(swing, _highest_sum(damping, contacts, inverse))
+    if law.couples:
+        rate = max(rate, _turning_rate(law, contacts, dynamics, approach, push.force))
     refuse_no_number("contacts", "stiffness or damping", rate, "contact.law")
     return RESOLUTION / rate if rate > 0 else np.inf
 
@@ -189,14 +191,49 @@ def _resolved(law: ForceLaw, contacts: Contacts, dynamics: BodyDynamics, approac
 def _tangential_sum(law: ForceLaw, contacts: Contacts, dynamics: BodyDynamics, inverse: FloatArray) -> float:
     """Bound of Σ k/m of springs along the surfaces of all contacts of either body, which turn the bodies too
     [1/time²]."""
-    count, turning = len(dynamics.pose.position), np.zeros_like(inverse)
-    lightest = np.linalg.eigvalsh(dynamics.inverse_inertia)[:, -1]
-    for side, body in enumerate([contacts.body_a, contacts.body_b]):
-        on_body = body < count
-        arm = middle(contacts)[on_body] - dynamics.pose.position[body[on_body]]
-        turning[on_body, side] = np.sum(arm**2, axis=1) * lightest[body[on_body]]
     touching = replace(contacts, gap=np.minimum(contacts.gap, JUST_IN * law.range))
+    turning = _square_arms(contacts, dynamics) * _lightest(contacts, dynamics)
     return _highest_sum(law.tangential_stiffness(touching), contacts, inverse + turning)
+
+
+def _turning_rate(
+    law: ForceLaw, contacts: Contacts, dynamics: BodyDynamics, approach: _Approach, force: FloatArray
+) -> float:
+    """Bound of the rate at which dampers along the surfaces and couples slow bodies down [1/time].
+
+    As their power S v² + 2 Q v w + W w² is never negative, it is at most 2 (S v² + W w²).
+    """
+    deepest = _deepest(law, contacts, approach.energy + law.energy(contacts), force)
+    axes, mass = np.eye(contacts.normal.shape[1]), np.ones(len(contacts))
+    sliding, rolling = np.zeros((2, len(contacts)))
+    for there in contacts_on_the_way(law, contacts, deepest):
+        for speed in _SPEEDS:
+            for axis in axes:
+                along = axis - (contacts.normal @ axis)[:, None] * contacts.normal
+                resisting = law.damping(there, Motion(speed * along, mass))
+                sliding = np.maximum(sliding, np.linalg.norm(resisting, axis=1) / speed)
+            for axis in np.eye(dynamics.twist.angular_velocity.shape[1]):
+                spin = np.tile(speed * axis, (len(contacts), 1))
+                resisting = law.couple(there, Motion(np.zeros_like(contacts.normal), mass, spin))
+                rolling = np.maximum(rolling, np.linalg.norm(resisting, axis=1) / speed)
+    lightest = _lightest(contacts, dynamics)
+    moving = _inverse_masses(contacts, dynamics) + _square_arms(contacts, dynamics) * lightest
+    return 2.0 * (_highest_sum(sliding, contacts, moving) + _highest_sum(rolling, contacts, lightest))
+
+
+def _square_arms(contacts: Contacts, dynamics: BodyDynamics) -> FloatArray:
+    """Squares of the distances from the centres of a and of b to the contact, (m, 2), zero for walls [length²]."""
+    square = np.zeros((len(contacts), 2))
+    for side, body in enumerate([contacts.body_a, contacts.body_b]):
+        on_body = body < len(dynamics.pose.position)
+        arm = middle(contacts)[on_body] - dynamics.pose.position[body[on_body]]
+        square[on_body, side] = np.sum(arm**2, axis=1)
+    return square
+
+
+def _lightest(contacts: Contacts, dynamics: BodyDynamics) -> FloatArray:
+    """Greatest inverse moments of inertia of a and of b, (m, 2), zero for walls [1/(mass·length²)]."""
+    return _pair_values(np.asarray(np.linalg.eigvalsh(dynamics.inverse_inertia)[:, -1]), contacts)
 
 
 def _reached(

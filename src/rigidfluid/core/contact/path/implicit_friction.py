@@ -1,0 +1,177 @@
+"""Forces along the surfaces in an implicit step, of springs that friction holds: solved together with the gaps."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy import sparse
+
+from rigidfluid.core.contact.path.stretched import across
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.types import Contacts, Motion
+
+_HALVINGS = 50
+_ROUNDING = 1e-14
+
+
+class Rubbing(NamedTuple):
+    """Mean ``force`` q along the surfaces on ``body_a`` (m, d) [force] and its slopes: ``stiffness`` -dq/dw (m, d, d)
+    by the way of the surfaces past each other [force/length], ``rise`` dq/df (m, d) by the normal force [1];
+    ``displacement`` ξ of the springs at the end (m, d) [length]. ``expected``: the force that the slopes begin from,
+    that of surfaces that stick where slip has turned round.
+    """
+
+    force: FloatArray
+    expected: FloatArray
+    stiffness: FloatArray
+    rise: FloatArray
+    displacement: FloatArray
+
+
+class Condensed(NamedTuple):
+    """Forces along the surfaces as linear functions of the normal ones f: ``compliance`` of the gaps (m, m)
+    [length/force] and ``free`` (m,), the gaps without f [length]; the force ``fixed`` (m, d), to which ``rise`` times f
+    is added, (d·m, m), None for nothing."""
+
+    compliance: Any
+    free: FloatArray
+    fixed: FloatArray
+    rise: Any = None
+
+    def along(self, force: FloatArray) -> FloatArray:
+        """Forces along the surfaces (m, d), for the normal ``force`` (m,) [force]."""
+        return self.fixed if self.rise is None else self.fixed + _rows(self.rise @ force, len(force))
+
+
+def no_rubbing(force: FloatArray) -> Rubbing:
+    """A ``force`` along the surfaces (m, d) that does not depend on how these move."""
+    none, d = np.zeros_like(force), force.shape[1]
+    return Rubbing(force, force, np.zeros((len(force), d, d)), none, none)
+
+
+class Slip(NamedTuple):
+    """Attempt at the forces along the surfaces: the ``motion`` in the step of this ``size`` [time] that the force
+    ``used`` (m, d) has led to [force]; ``secant``: whether slopes are to be those of secants, for which attempts
+    converge slowly but surely."""
+
+    motion: Motion
+    size: float
+    used: FloatArray
+    secant: bool
+
+
+def rubbing(law: ForceLaw, middle: Contacts, end: Contacts, held: FloatArray, slip: Slip) -> Rubbing:
+    """Mean force along the surfaces in a step, where springs have the displacement ``held`` ξ₀ (m, d) at its start, and
+    ``middle`` has the gaps at which the law gives the mean normal forces.
+
+    Spring and dashpot, side by side, are in a row with the slip s: for the way w = Δξ + s
+
+        q = -[k (ξ₀ + ξ₁)/2 + c Δξ/Δt],   |q| ≤ μ F_n,   s = -λ q with λ ≥ 0 only where |q| = μ F_n.
+
+    The loss q·w less the change of k ξ²/2 is then c Δξ²/Δt + |q| |s| ≥ 0. So are those of ξ₀ and ξ₁, each shortened to
+    what friction can hold, ξ₁ at the ``end``. The slopes are those of surfaces that stick if the force is opposite to
+    the one used: the slip went too far.
+    """
+    motion, stiffness = slip.motion, law.tangential_stiffness(middle)[:, None]
+    straight = Motion(motion.velocity - across(motion.velocity, middle), motion.mass)
+    before = law.held_displacement(middle, straight, held)
+    way, damped = slip.size * across(motion.velocity, middle), across(law.damping(middle, motion), middle)
+    resistance = 0.5 * stiffness + _over(_length(damped), _length(way))
+    tried = stiffness * before + resistance * way
+    pulled = stiffness * law.held_displacement(middle, straight, _over(tried, stiffness))
+    after = before + _over(pulled - stiffness * before, resistance)
+    sticks = _length(pulled) >= (1.0 - _ROUNDING) * _length(tried)
+    turned = ~sticks & (np.sum(pulled * slip.used, axis=1, keepdims=True) > 0.0) & (not slip.secant)
+    expected, sticks = np.where(turned, tried, pulled), sticks | turned
+    bounded = np.where(sticks, np.where(_length(before) < _length(held), stiffness * before, 0.0), pulled)
+    return Rubbing(
+        -pulled,
+        -expected,
+        resistance[:, :, None] * _directions(middle, expected, tried, sticks | slip.secant),
+        -_over(bounded, _normal_force(law, middle, straight)),
+        law.held_displacement(end, Motion(np.zeros_like(way), motion.mass), after),
+    )
+
+
+def with_mean_gaps(law: ForceLaw, start: Contacts, middle: Contacts, gap: FloatArray, force: FloatArray) -> Contacts:
+    """The contacts ``middle`` with gaps between those at the ``start`` and ``gap`` (m,) at which the law has this
+    ``force`` (m,), its mean on the way."""
+    near, far = np.minimum(start.gap, gap), np.maximum(start.gap, gap)
+    for _ in range(_HALVINGS):
+        between = replace(middle, gap=0.5 * (near + far))
+        weaker = np.sum(law.force(between) * between.normal, axis=1) < force
+        near, far = np.where(weaker, near, between.gap), np.where(weaker, between.gap, far)
+    return replace(middle, gap=0.5 * (near + far))
+
+
+def condensed(
+    response: Any, contacts: Contacts, rub: Rubbing, gap: FloatArray, normal: FloatArray, along: FloatArray
+) -> Condensed:
+    """Forces along the surfaces by their slopes at the ``gap`` (m,) [length] that the forces ``normal`` (m,) and
+    ``along`` (m, d) [force] have led to, where ``response`` (d·m, d·m) is that of all ways to all forces
+    [length/force]."""
+    dense = isinstance(response, np.ndarray)
+    columns = contacts.normal[:, :, None], rub.rise[:, :, None], rub.stiffness
+    ahead, by_force, slope = (_blocks(entries, dense) for entries in columns)
+    identity = np.eye(len(response)) if dense else sparse.eye(response.shape[0])
+    lag = (rub.expected - along).T.ravel()
+    rise, missing = _solved(identity + slope @ response, by_force - slope @ (response @ ahead), lag)
+    opening = ahead.T @ response
+    compliance = opening @ ahead + opening @ rise
+    fixed = along + _rows(missing - rise @ normal, len(normal))
+    return Condensed(compliance, gap + opening @ missing - compliance @ normal, fixed, rise)
+
+
+def _rows(column: FloatArray, count: int) -> FloatArray:
+    """Vectors (m, d) of a ``column`` (d·m,) of all first components, all second ones, …"""
+    return np.asarray(column.reshape(-1, count).T)
+
+
+def _solved(matrix: Any, right: Any, lag: FloatArray) -> tuple[Any, FloatArray]:
+    """Solutions of ``matrix`` x = ``right`` (d·m, m) and = ``lag`` (d·m,)."""
+    if isinstance(matrix, np.ndarray):
+        both = np.linalg.solve(matrix, np.column_stack([right, lag]))
+        return both[:, :-1], both[:, -1]
+    from scipy.sparse.linalg import splu
+
+    factors = splu(sparse.csc_matrix(matrix))
+    return sparse.csr_matrix(factors.solve(right.toarray())), factors.solve(lag)
+
+
+def _blocks(entries: FloatArray, dense: bool) -> Any:
+    """Matrix (a·m, b·m) of a·b diagonal blocks, from the ``entries`` (m, a, b) on their diagonals."""
+    count, rows, columns = entries.shape
+    if dense:
+        matrix, here = np.zeros((rows, count, columns, count)), np.arange(count)
+        matrix[:, here, :, here] = entries
+        return matrix.reshape(rows * count, columns * count)
+    contact, row, column = np.indices(entries.shape)
+    places = (row * count + contact).ravel(), (column * count + contact).ravel()
+    return sparse.csr_matrix((entries.ravel(), places), (rows * count, columns * count))
+
+
+def _directions(contacts: Contacts, pulled: FloatArray, tried: FloatArray, also_ahead: BoolArray) -> FloatArray:
+    """Derivative (m, d, d) of forces ``pulled`` by those ``tried``, which were shortened to them; those ``also_ahead``
+    (m, 1) are shortened by the same factor."""
+    normal, ahead = contacts.normal, _over(tried, _length(tried))
+    tangents = np.eye(normal.shape[1]) - normal[:, :, None] * normal[:, None, :]
+    sideways = tangents - np.where(also_ahead, 0.0, 1.0)[:, :, None] * ahead[:, :, None] * ahead[:, None, :]
+    part = np.where(_length(tried) > 0.0, _over(_length(pulled), _length(tried)), 1.0)
+    return np.asarray(part[:, :, None] * sideways)
+
+
+def _normal_force(law: ForceLaw, contacts: Contacts, motion: Motion) -> FloatArray:
+    force = law.force(contacts) + law.damping(contacts, motion)
+    return np.asarray(np.sum(force * contacts.normal, axis=1, keepdims=True))
+
+
+def _length(vectors: FloatArray) -> FloatArray:
+    return np.asarray(np.linalg.norm(vectors, axis=1, keepdims=True))
+
+
+def _over(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
+    """Quotient, zero where the denominator is."""
+    return np.divide(numerator, denominator, out=np.zeros_like(numerator), where=denominator != 0.0)
