@@ -54,8 +54,8 @@ def ellipsoid_touches(body: PlacedEllipsoid, surface: FacetSurface, features: Fe
     ellipsoid, which is convex, must not fall from a corner or an edge along any edge or facet that begins there. An
     ellipsoid with its centre behind the surface, or deep in it, has one place, that nearest to the centre.
 
-    ``body`` is in the frame of the surface, ``reach`` the largest distance [length]. ``point`` is 0 in all rows of the
-    result, ``foot`` on the surface, ``distance`` and ``normal`` from there to the ellipsoid.
+    ``body`` is in the frame of the surface, ``reach`` the largest distance [length]. ``point`` and ``facet`` are 0 in
+    all rows of the result, ``foot`` on the surface, ``distance`` and ``normal`` from there to the ellipsoid.
     """
     centre = surface.nearby(body.position[None], np.inf, 0.0)
     towards = np.sum((body.farthest(-centre.normal) - centre.foot) * centre.normal, axis=1)
@@ -80,7 +80,7 @@ def _distinct_places(found: Nearby, reach: float, same: float) -> Nearby:
         if found.distance[row] <= reach and np.all(others > same):
             chosen.append(row)
     rows = np.array(chosen, dtype=np.int64)
-    return Nearby(found.point[rows], found.foot[rows], found.distance[rows], found.normal[rows])
+    return Nearby(*(each[rows] for each in found))
 
 
 def _facet_minima(body: PlacedEllipsoid, surface: FacetSurface) -> Nearby:
@@ -141,4 +141,4 @@ def _edge_minima(body: PlacedEllipsoid, surface: FacetSurface, features: Feature
 
 def _places(foot: FloatArray, distance: FloatArray, normal: FloatArray) -> Nearby:
     none: IntArray = np.zeros(len(foot), dtype=np.int64)
-    return Nearby(none, foot, distance, normal)
+    return Nearby(none, none, foot, distance, normal)

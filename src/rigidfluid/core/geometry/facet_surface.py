@@ -24,10 +24,12 @@ _CORNER = np.array([0, 1, 0, 2, 0, 1, 0])
 
 
 class Nearby(NamedTuple):
-    """Places of a surface: the ``point`` (m,) each is near to, by its row, the ``foot`` (m, d), the signed ``distance``
-    (m,) and the unit ``normal`` (m, d) into the fluid."""
+    """Places of a surface: the ``point`` (m,) each is near to, by its row, the ``facet`` (m,) that it is on, or one of
+    them, 0 on a surface without facets, the ``foot`` (m, d), the signed ``distance`` (m,) and the unit ``normal`` (m,
+    d) into the fluid."""
 
     point: IntArray
+    facet: IntArray
     foot: FloatArray
     distance: FloatArray
     normal: FloatArray
@@ -110,16 +112,16 @@ class FacetSurface(Surface):
         """
         return self._measured(points, *self._nearest(points)).normal
 
-    def nearby(self, points: FloatArray, reach: float, spread: float) -> Nearby:
+    def nearby(self, points: FloatArray, reach: float | FloatArray, spread: float | FloatArray) -> Nearby:
         """Places of the surface that are nearer to a point than all around them, as the two sides of a hollow.
 
         Parameters
         ----------
         points : (N, d) array
             Anywhere [length].
-        reach : float
+        reach : float or (N,) array
             Largest distance, may be infinite [length].
-        spread : float
+        spread : float or (N,) array
             How much farther than the nearest place others may be [length].
 
         Returns
@@ -149,6 +151,7 @@ class FacetSurface(Surface):
         near = np.flatnonzero(first.distance <= reach)
         return Nearby(
             np.concatenate([near, query[row][ahead]]),
+            np.concatenate([facet[near], others[row][ahead]]),
             *(np.concatenate([one[near], other[ahead]]) for one, other in zip(first, more, strict=True)),
         )
 
@@ -203,11 +206,12 @@ def _distinct(query: IntArray, foot: FloatArray, first: FloatArray, touching: fl
     return np.asarray(apart & ~np.tril(same, -1).any(axis=1))
 
 
-def nearby(shape: Surface, points: FloatArray, reach: float, spread: float) -> Nearby:
+def nearby(shape: Surface, points: FloatArray, reach: float | FloatArray, spread: float | FloatArray) -> Nearby:
     """Places of a shape by `FacetSurface.nearby`; the nearest place alone if it has no facets, as its hollows are not
     known."""
     if isinstance(shape, FacetSurface):
         return shape.nearby(points, reach, spread)
     distance = shape.signed_distance(points)
     near = np.flatnonzero(distance <= reach)
-    return Nearby(near, shape.closest_point(points[near]), distance[near], shape.normal(points[near]))
+    foot, normal = shape.closest_point(points[near]), shape.normal(points[near])
+    return Nearby(near, np.zeros_like(near), foot, distance[near], normal)

@@ -40,6 +40,9 @@ class Interaction:
         return chosen
 
 
+_Share = tuple[Interaction, Contacts, BoolArray]
+
+
 def acted_in(interactions: Sequence[Interaction], contacts: Contacts) -> BoolArray:
     """Tell whether any of the interactions acts in each contact, (m,)."""
     each = [interaction.acts_in(contacts) for interaction in interactions]
@@ -77,6 +80,7 @@ class SumOfLaws(ForceLaw):
         self.vanishes_at_range = all(law.vanishes_at_range for law in with_energy)
         self.sticking = any(law.sticking for law in laws)
         self.couples = any(law.couples for law in laws)
+        self._shared: tuple[Contacts | None, list[_Share]] = None, []
 
     @property
     def ranges(self) -> tuple[float, ...]:
@@ -130,8 +134,13 @@ class SumOfLaws(ForceLaw):
             total[chosen] += asked(interaction.law, some, chosen)
         return total
 
-    def _shares(self, contacts: Contacts) -> Iterator[tuple[Interaction, Contacts, BoolArray]]:
-        """Each interaction that acts here, its contacts, and which they are."""
+    def _shares(self, contacts: Contacts) -> list[_Share]:
+        """Each interaction that acts here, its contacts, and which they are; kept for the same contacts."""
+        if self._shared[0] is not contacts:
+            self._shared = contacts, list(self._divided(contacts))
+        return self._shared[1]
+
+    def _divided(self, contacts: Contacts) -> Iterator[_Share]:
         for interaction in self.interactions:
             chosen = interaction.acts_in(contacts)
             if chosen.all():

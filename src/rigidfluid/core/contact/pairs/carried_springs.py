@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.contact.pairs.body_points import body_arms, placed_points
-from rigidfluid.core.contact.pairs.same_contacts import PointPairs, all_different, nearest_contacts
+from rigidfluid.core.contact.pairs.same_contacts import PointPairs, all_different, distances, nearest_contacts
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.contacts import select
@@ -14,6 +14,10 @@ from rigidfluid.core.model.types import Contacts, Pose
 
 _OPPOSITE = 1e-12
 """Least 1 + cosine of the angle between two normals at which their common plane is known."""
+
+
+_MOST_AT_ONCE = 10_000
+"""Largest number of distances, of all springs to all contacts, that are measured at once."""
 
 
 def carried_displacement(springs: TangentialSprings | None, contacts: Contacts, pose: Pose) -> FloatArray:
@@ -64,6 +68,12 @@ def _matched(springs: TangentialSprings, contacts: Contacts, pose: Pose) -> tupl
         _, mine, theirs = np.intersect1d(before, now, assume_unique=True, return_indices=True)
         return mine, theirs
     points = _carried_points(springs, pose)
+    same = before[:, None] == now
+    if same.size <= _MOST_AT_ONCE:
+        away = np.where(same, distances(points, PointPairs(contacts.point_a, contacts.point_b)), np.inf)
+        nearest = np.argmin(away, axis=1)
+        if same.any(axis=1).all() and len(np.unique(nearest)) == len(nearest):
+            return np.arange(len(nearest)), nearest  # no sum of distances is less
     mine, theirs = [], []
     for pair in np.intersect1d(before, now):
         rows, others = np.flatnonzero(before == pair), np.flatnonzero(now == pair)

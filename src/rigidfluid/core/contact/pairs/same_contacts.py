@@ -23,7 +23,7 @@ def nearest_contacts(first: PointPairs, second: PointPairs) -> tuple[IntArray, I
     """Rows of contacts that belong together, each once, at the least sum of distances, and these (k,) [length]."""
     from scipy.optimize import linear_sum_assignment
 
-    away = _apart(first, second)
+    away = distances(first, second)
     mine, theirs = linear_sum_assignment(away)
     return mine, theirs, away[mine, theirs]
 
@@ -33,8 +33,8 @@ def all_different(numbers: IntArray) -> bool:
     return bool(np.all(numbers[1:] != numbers[:-1]))
 
 
-def _apart(first: PointPairs, second: PointPairs) -> FloatArray:
-    """Distance of the nearer points and a little of that of the others, of each of some contacts to each of others
-    [length]: a corner goes with its body, while the point that faces it slides."""
+def distances(first: PointPairs, second: PointPairs) -> FloatArray:
+    """Distance of the nearer points and a little of that of the others, of each of some contacts to each of others, (m,
+    k) [length]: a corner goes with its body, while the point that faces it slides."""
     a, b = (np.linalg.norm(one[:, None] - other[None], axis=2) for one, other in zip(first, second, strict=True))
     return np.asarray(np.minimum(a, b) + SLIDING * np.maximum(a, b))

@@ -1,0 +1,38 @@
+"""Places at which pairs of surfaces are near each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+
+
+class Touches(NamedTuple):
+    """Places of some pairs a, b: the row ``pair`` (m,) of each, ``point_a``, ``point_b``, ``normal`` (m, d) from b to
+    a, ``gap`` (m,)."""
+
+    pair: IntArray
+    point_a: FloatArray
+    point_b: FloatArray
+    normal: FloatArray
+    gap: FloatArray
+
+    def select(self, chosen: BoolArray | IntArray) -> Touches:
+        """Places that are ``chosen``, by truth values (m,) or by rows."""
+        return Touches(*(each[chosen] for each in self))
+
+    def turned(self, turned: BoolArray) -> Touches:
+        """The same places, a and b exchanged in those that are ``turned`` (m,)."""
+        swap = turned[:, None]
+        point_a, point_b = np.where(swap, self.point_b, self.point_a), np.where(swap, self.point_a, self.point_b)
+        return Touches(self.pair, point_a, point_b, np.where(swap, -self.normal, self.normal), self.gap)
+
+
+def all_touches(parts: Sequence[Touches], dimension: int) -> Touches:
+    """Places of all parts, one after the other."""
+    vectors = np.empty((0, dimension))
+    none = Touches(np.empty(0, dtype=np.int64), vectors, vectors, vectors, np.empty(0))
+    return Touches(*(np.concatenate(each) for each in zip(none, *parts, strict=True)))
