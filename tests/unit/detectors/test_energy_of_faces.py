@@ -84,10 +84,10 @@ MOTIONS: dict[str, tuple[list[list[list[float]]], list[Wall], Path]] = {
     ),
     "a square goes down beside an L": ([SQUARE, L_SHAPE], [], lambda s: [(1.4, 1.4 - 0.8 * s, 0.02), (0.0, 0.0, 0.0)]),
     "a square rolls over a bump": ([SQUARE], [BUMP], lambda s: [(1.2 * s - 0.6, 0.95, 1.6 - 3.0 * s)]),
-    "a corner goes round an octagonal room": (
+    "a corner goes past the edge of an octagonal room": (
         [SQUARE],
         [hollow()],
-        lambda s: [(1.05 * np.cos(7.0 * s), 1.05 * np.sin(7.0 * s), 7.0 * s - np.pi / 4)],
+        lambda s: [(1.88 - np.sqrt(0.5), 0.2 * s - 0.1, 0.2 - np.pi / 4)],
     ),
 }
 

@@ -68,21 +68,30 @@ def _matched(springs: TangentialSprings, contacts: Contacts, pose: Pose) -> tupl
         _, mine, theirs = np.intersect1d(before, now, assume_unique=True, return_indices=True)
         return mine, theirs
     points = _carried_points(springs, pose)
-    same = before[:, None] == now
-    if same.size <= _MOST_AT_ONCE:
-        away = np.where(same, distances(points, PointPairs(contacts.point_a, contacts.point_b)), np.inf)
-        nearest = np.argmin(away, axis=1)
-        if same.any(axis=1).all() and len(np.unique(nearest)) == len(nearest):
-            return np.arange(len(nearest)), nearest  # no sum of distances is less
-    mine, theirs = [], []
-    for pair in np.intersect1d(before, now):
+    own, found = _plain_matches(points, before, contacts, now)
+    mine, theirs = [own], [found]
+    for pair in np.setdiff1d(np.intersect1d(before, now), before[own]):
         rows, others = np.flatnonzero(before == pair), np.flatnonzero(now == pair)
         there = PointPairs(contacts.point_a[others], contacts.point_b[others])
         own, found, _ = nearest_contacts(PointPairs(points.a[rows], points.b[rows]), there)
         mine.append(rows[own])
         theirs.append(others[found])
-    none = [np.zeros(0, dtype=np.int64)]
-    return np.concatenate(none + mine), np.concatenate(none + theirs)
+    return np.concatenate(mine), np.concatenate(theirs)
+
+
+def _plain_matches(
+    points: PointPairs, before: IntArray, contacts: Contacts, now: IntArray
+) -> tuple[IntArray, IntArray]:
+    """Rows of springs and contacts of the pairs in which each spring has a nearest contact of its own, so that no other
+    sum of distances is less; none where they are too many to be measured at once."""
+    same = before[:, None] == now
+    if not 0 < same.size <= _MOST_AT_ONCE:
+        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
+    away = np.where(same, distances(points, PointPairs(contacts.point_a, contacts.point_b)), np.inf)
+    nearest = np.argmin(away, axis=1)
+    alone = same.any(axis=1) & (np.bincount(nearest, minlength=len(now))[nearest] == 1)
+    rows = np.flatnonzero(np.isin(before, before[~alone], invert=True))
+    return rows, nearest[rows]
 
 
 def _carried_points(springs: TangentialSprings, pose: Pose) -> PointPairs:
