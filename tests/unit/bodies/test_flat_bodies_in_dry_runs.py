@@ -1,0 +1,100 @@
+"""Flat sides on flat sides: blocks slide by Coulomb's law, walls of bricks stand, dominoes fall, gears turn."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from flat_bodies import DOMINO_STEP, GRAVITY, HEIGHT, PITCH, brick_wall, domino_row, gear_pair
+from slopes import FRICTION, block_on_slope
+
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.run.simulation import Simulation
+from rigidfluid.core.scene.scene import Scene
+
+TIPPED = 0.05
+"""Angle from which on a domino counts as falling [rad]."""
+
+
+def stepped(simulation: Simulation, time: float) -> None:
+    while time_of(simulation) < time * (1.0 - 1e-9):
+        simulation.step()
+
+
+def time_of(simulation: Simulation) -> float:
+    return simulation.clock.time(simulation.state.tick)
+
+
+def test_a_block_slides_down_a_slope_as_coulomb_says() -> None:
+    """g (sin α - μ cos α), once the springs along the surfaces slip."""
+    simulation = Simulation(block_on_slope(1.5, end=0.5), None, False)
+    stepped(simulation, 0.2)
+    before = simulation.state.twist.velocity[0, 0]
+    stepped(simulation, 0.4)
+    angle = np.arctan(1.5 * FRICTION)
+    expected = GRAVITY * (np.sin(angle) - FRICTION * np.cos(angle))
+    assert (simulation.state.twist.velocity[0, 0] - before) / 0.2 == pytest.approx(expected, rel=1e-3)
+    assert abs(simulation.state.pose.orientation[0, 0]) < 0.03
+
+
+def moved_after(scene: Scene, settled: float, time: float) -> tuple[float, float]:
+    """Farthest way of a body's centre over the brick's height, and greatest speed, in a ``time`` after it has
+    settled."""
+    simulation = Simulation(scene, None, False)
+    stepped(simulation, settled)
+    place = simulation.state.pose.position
+    stepped(simulation, settled + time)
+    state = simulation.state
+    return float(np.abs(state.pose.position - place).max()) / HEIGHT, float(np.abs(state.twist.velocity).max())
+
+
+def test_three_bricks_stay_on_each_other() -> None:
+    moved, speed = moved_after(brick_wall(0.3, (2, 1)), 0.2, 0.1)
+    assert moved < 1e-3
+    assert speed < 1e-3
+
+
+@pytest.mark.long
+def test_a_wall_of_ten_bricks_stands() -> None:
+    moved, speed = moved_after(brick_wall(1.7), 0.7, 1.0)
+    assert moved < 1e-3
+    assert speed < 1e-4
+
+
+def tipping_times(scene: Scene, count: int) -> tuple[FloatArray, Simulation]:
+    """Times at which dominoes begin to fall, until the last one does or the scene ends."""
+    simulation, times = Simulation(scene, None, False), np.full(count, np.inf)
+    while not simulation.ended and np.isinf(times[-1]):
+        state = simulation.step()
+        falling = state.pose.orientation[:, 0] < -TIPPED
+        times[falling & np.isinf(times)] = time_of(simulation)
+    return times, simulation
+
+
+def test_dominoes_fall_as_fast_as_the_root_of_gravity() -> None:
+    """v = √(g h) f(distance/h) by their similarity (McLachlan et al., SIAM Rev. 25 (1983) 403)."""
+    slow, fast = (tipping_times(domino_row(2, 0.6, gravity), 2)[0] for gravity in (GRAVITY, 4.0 * GRAVITY))
+    assert slow[1] - slow[0] > 0.3
+    np.testing.assert_allclose(fast, 0.5 * slow, rtol=0, atol=1.01 * DOMINO_STEP)
+
+
+@pytest.mark.long
+def test_a_row_of_dominoes_falls_faster_and_faster_towards_a_speed() -> None:
+    times, simulation = tipping_times(domino_row(14, 3.0), 14)
+    assert np.all(np.isfinite(times))
+    speed = PITCH / np.diff(times[1:]) / np.sqrt(GRAVITY)
+    assert np.all(np.diff(speed) > -0.1)
+    assert speed[-1] > 1.0
+    assert abs(speed[-1] / speed[-3] - 1.0) < 0.15
+    assert abs(simulation.state.ledger.residual) < 5e-3 * 14 * 0.12 * GRAVITY
+
+
+@pytest.mark.long
+def test_a_gear_pair_turns_with_the_ratio_of_its_teeth() -> None:
+    """The second wheel has no load and flies on from tooth to tooth; it never leaves the play of the teeth."""
+    simulation = Simulation(gear_pair((12, 18), 4.0, 0.8), None, False)
+    start, apart = simulation.state.pose.orientation[:, 0], []
+    while not simulation.ended:
+        turned = simulation.step().pose.orientation[:, 0] - start
+        apart.append(turned[1] + turned[0] * 12 / 18)
+    assert turned[0] == pytest.approx(3.2)
+    assert np.abs(apart).max() < 0.15 * 2.0 * np.pi / 18
