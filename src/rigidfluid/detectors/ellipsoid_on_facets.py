@@ -80,7 +80,7 @@ def _distinct_places(found: Nearby, reach: float, same: float) -> Nearby:
         if found.distance[row] <= reach and np.all(others > same):
             chosen.append(row)
     rows = np.array(chosen, dtype=np.int64)
-    return Nearby(*(each[rows] for each in found))
+    return found.select(rows)
 
 
 def _facet_minima(body: PlacedEllipsoid, surface: FacetSurface) -> Nearby:

@@ -122,8 +122,8 @@ class FacetDetector(Detector):
         """Places besides those of points: on ellipsoids, and of two surfaces of facets between edges that pass each
         other, or, where no corner is inside, that go through facets."""
         long = np.isin(pairs.a, self._long) | np.isin(pairs.b, self._long)
-        for pair in np.flatnonzero(long).tolist():
-            yield _touches(pair, self._ellipsoid_places(int(pairs.a[pair]), int(pairs.b[pair]), placed, reach))
+        for row in np.flatnonzero(long).tolist():
+            yield _touches(row, self._ellipsoid_places(int(pairs.a[row]), int(pairs.b[row]), placed, reach))
         pair = np.flatnonzero(self._faceted[pairs.a] & self._faceted[pairs.b])
         least = _least_gaps(found, len(pairs.a))
         span = np.minimum(reach, np.maximum(least, 0.0) + pairs.spread)
@@ -193,7 +193,7 @@ def is_known(shape: Surface) -> bool:
 
 
 def _probed(shape: Surface, solid: Solid | None) -> Probed:
-    """What of a body or a wall is measured: the corners of facets, the centre of a ball or a bump."""
+    """Points of a body or a wall that are measured: the corners of facets, the centre of a ball or a bump."""
     if solid is not None:
         return Probed(solid.surface.facets.points[solid.features.corners], 0.0, solid)
     target, radius = None if isinstance(shape, Body) else shape, radius_of(shape)

@@ -43,8 +43,8 @@ class Placement(NamedTuple):
 
 
 class Probed(NamedTuple):
-    """A surface by what of it is measured: its ``points`` (p, d) with a ``radius`` around each [length], to other
-    surfaces; its ``target``, None for one that others are not measured to: facets or a flat or round wall."""
+    """A surface by its ``points`` (p, d) that are measured to others, with a ``radius`` around each [length], and its
+    ``target``, to which others are measured: facets, a flat or round wall, or None."""
 
     points: FloatArray
     radius: float
@@ -56,7 +56,7 @@ class Probes:
 
     A corner at x with nearest point p of the other surface has gap = |x - p| and normal (x - p)/|x - p|. It counts
     near or far, and whatever side of its body it is on: the distance of a point to a convex surface has a continuous
-    slope, so that no force jumps. Of the sides of one hollow a corner has that which is nearest.
+    slope, so that no force jumps. A corner has the nearest side of a hollow alone.
     """
 
     def __init__(self, surfaces: Sequence[Probed]) -> None:
@@ -135,4 +135,4 @@ def _nearest_sides(found: Nearby, target: Solid | Surface, corner: BoolArray) ->
     hollow = found.point * len(target.hollows) + target.hollows[found.facet]
     number = np.where(corner[found.point], hollow, -1 - np.arange(len(hollow)))
     nearest = order[np.unique(number[order], return_index=True)[1]]
-    return Nearby(*(each[np.sort(nearest)] for each in found))
+    return found.select(np.sort(nearest))

@@ -22,7 +22,8 @@ class Touches(NamedTuple):
 
     def select(self, chosen: BoolArray | IntArray) -> Touches:
         """Places that are ``chosen``, by truth values (m,) or by rows."""
-        return Touches(*(each[chosen] for each in self))
+        vectors = self.point_a[chosen], self.point_b[chosen], self.normal[chosen]
+        return Touches(self.pair[chosen], *vectors, self.gap[chosen])
 
     def turned(self, turned: BoolArray) -> Touches:
         """The same places, a and b exchanged in those that are ``turned`` (m,)."""

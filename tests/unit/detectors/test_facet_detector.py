@@ -247,11 +247,10 @@ def test_a_cube_lies_on_four_corners_and_on_a_turned_cube_on_eight_crossing_edge
     assert stacked.gap[8:].min() > 0.2  # corners beside the other cube
 
 
-def test_a_corner_that_is_the_nearest_to_a_bump_is_one_contact() -> None:
+def test_a_corner_that_is_the_nearest_to_a_bump_counts_as_a_corner_and_as_the_nearest_place() -> None:
     bump = Wall(9, "bump", Arc(np.array([0.0, -0.2]), 0.6, Plane(np.zeros(2), np.array([0.0, 1.0]))))
-    random = np.random.default_rng(0)
-    for _ in range(50):
-        x, y, angle = random.uniform([-0.5, 1.6, 0.0], [0.5, 3.0, 7.0])
-        contacts = found([polygon(SQUARE)], pose((x, y, angle)), bump)
-        points = np.concatenate([contacts.point_a, contacts.point_b], axis=1)
-        assert len(np.unique(points, axis=0)) == len(points) > 0
+    corner = found([polygon(SQUARE)], pose((0.0, 0.5 + np.sqrt(0.5), np.pi / 4)), bump)
+    np.testing.assert_allclose(corner.gap[:2], 0.1, rtol=1e-12)
+    beside = found([polygon(SQUARE)], pose((0.1, 1.0, 0.0)), bump)
+    np.testing.assert_allclose(beside.gap[0], 0.1, rtol=1e-12)
+    assert beside.gap[1] > 0.15

@@ -34,6 +34,10 @@ class Nearby(NamedTuple):
     distance: FloatArray
     normal: FloatArray
 
+    def select(self, rows: IntArray) -> Nearby:
+        """Places in these ``rows``."""
+        return Nearby(self.point[rows], self.facet[rows], self.foot[rows], self.distance[rows], self.normal[rows])
+
 
 class _Measured(NamedTuple):
     foot: FloatArray
