@@ -5,6 +5,7 @@ import pytest
 from touching import unstacked
 
 from rigidfluid.core.contact.laws.film_loss import FilmLoss
+from rigidfluid.core.contact.laws.friction import Friction, Rubbing
 from rigidfluid.core.contact.laws.repulsion import Repulsion
 from rigidfluid.core.contact.laws.restitution import Restitution
 from rigidfluid.core.geometry.arrays import FloatArray
@@ -50,6 +51,16 @@ class TestRestitution(ForceLawContract):
     def law(self, repulsion: ForceLaw, request: pytest.FixtureRequest) -> ForceLaw:
         film = Film(0.1, np.array([0.7, 0.4]), 0.01, True)
         return Restitution(repulsion, 0.5, None if request.param == "of its own" else FilmLoss(35.0, film, LOADS))
+
+
+class TestFriction(ForceLawContract):
+    @pytest.fixture(params=[CentreLaw, ContactPointLaw, NormalLaw, BarrierLaw], ids=lambda part: part.name)
+    def repulsion(self, request: pytest.FixtureRequest) -> ForceLaw:
+        return request.param(request.param.Options(epsilon=5e-6), RANGE)
+
+    @pytest.fixture(params=[None, 3e3], ids=["stiffness of the law", "given stiffness"])
+    def law(self, repulsion: ForceLaw, request: pytest.FixtureRequest) -> ForceLaw:
+        return Friction(Restitution(repulsion, 0.5), Rubbing(0.4, request.param, 1.0, 0.3 * RANGE))
 
 
 class TestSpringDashpot(ForceLawContract):

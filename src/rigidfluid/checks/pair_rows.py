@@ -12,6 +12,8 @@ import numpy as np
 from rigidfluid.checks.design_contacts import DesignContacts, design_contacts
 from rigidfluid.checks.film import resolved_gap
 from rigidfluid.checks.rebound import given_back
+from rigidfluid.core.contact.laws.added_law import added, bare
+from rigidfluid.core.contact.laws.film_loss import FilmLoss
 from rigidfluid.core.contact.laws.restitution import Restitution
 from rigidfluid.core.contact.laws.rough_film import RoughFilm
 from rigidfluid.core.contact.laws.stokes_number import stokes_number
@@ -55,17 +57,17 @@ def pair_rows(system: System, mesh: MeshTable | None) -> Iterator[PairRow]:
 
 def _pair_row(design: DesignContacts, mesh: MeshTable | None, row: int) -> PairRow:
     laws = [interaction.law for interaction in design.interactions]
-    dry, rough = _dry_restitution(laws), [law.loss for law in laws if isinstance(law, Restitution)]
+    dry, losses = _dry_restitution(laws), _losses(laws)
     stokes = _stokes_number(design, row)
     return PairRow(
         names=design.names(row),
         count=_alike(design, row),
-        laws=tuple(law.law.name if isinstance(law, Restitution) else law.name for law in laws),
+        laws=tuple(bare(law).name for law in laws),
         speed=float(design.speed[row]),
         stokes_number=stokes,
         resolved=_resolved(design, mesh, row),
         range=design.law.range,
-        roughness=next((loss.roughness for loss in rough if isinstance(loss, RoughFilm)), None),
+        roughness=next((loss.roughness for loss in losses if isinstance(loss, RoughFilm)), None),
         friction=_friction(laws),
         restitution=dry,
         rebound=dry if design.system.loads.film is None else _rebound(design, laws, row, dry, stokes),
@@ -93,9 +95,16 @@ def _dry_restitution(laws: list[ForceLaw]) -> float | None:
     return found.pop() if len(found) == 1 else None
 
 
+def _losses(laws: list[ForceLaw]) -> list[FilmLoss | RoughFilm]:
+    """Losses of impacts in the film that laws know of."""
+    restitutions = [added(Restitution, law) for law in laws]
+    return [each.loss for each in restitutions if each is not None and each.loss is not None]
+
+
 def _own_restitution(law: ForceLaw) -> float | None:
-    if isinstance(law, Restitution):
-        return law.restitution
+    if restitution := added(Restitution, law):
+        return restitution.restitution
+    law = bare(law)
     if law.dissipative:
         given: float | None = getattr(law.options, "restitution", None)
         return given
@@ -119,7 +128,7 @@ def _rebound(
     film = design.system.loads.film
     if film is None or stokes is None or not stokes > 0.0 or dry is None:
         return None
-    losses = [law.loss for law in laws if isinstance(law, Restitution) and law.loss is not None]
+    losses = _losses(laws)
     if len(losses) == len([law for law in laws if law.keeps_apart]) == 1:
         return float(losses[0].whole(dry, _only(design, row), np.array([stokes]))[0])
     if design.law.dissipative:

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.finding import round_down, round_up
+from rigidfluid.core.contact.laws.added_law import bare
 from rigidfluid.core.contact.laws.repulsion import AUTO, Repulsion
-from rigidfluid.core.contact.laws.restitution import without_restitution
 
 
 def strength_remedy(design: DesignContacts, share: float) -> tuple[Mapping[str, float], str]:
@@ -20,7 +20,7 @@ def strength_remedy(design: DesignContacts, share: float) -> tuple[Mapping[str, 
     if len(repelling) > 1:
         fields = " and ".join(interaction.field for interaction in repelling)
         return enough, f"Make the laws of {fields} {round_up(1.0 / share)} times as strong, or widen their ranges."
-    law, field = without_restitution(repelling[0].law), repelling[0].field
+    law, field = bare(repelling[0].law), repelling[0].field
     if not isinstance(law, Repulsion):
         return enough, f"Make the law {round_up(1.0 / share)} times as strong, or widen its range."
     given = law.options.epsilon_wall if design.at_walls and law.options.epsilon_wall else law.options.epsilon

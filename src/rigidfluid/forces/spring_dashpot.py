@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.mechanics.coulomb import dashpot_coefficient, held_displacement, sliding_friction
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Loads, Motion
@@ -102,7 +103,7 @@ class SpringDashpotLaw(ForceLaw):
         if self.sticking:
             rubbing = along[:, None] * sliding
         else:
-            rubbing = _limited(along, self._greatest_friction(contacts, coefficient * speed), sliding)
+            rubbing = sliding_friction(along, self._greatest_friction(contacts, coefficient * speed), sliding)
         return np.asarray(-(coefficient * speed)[:, None] * contacts.normal - rubbing)
 
     def tangential_stiffness(self, contacts: Contacts) -> FloatArray:
@@ -111,13 +112,10 @@ class SpringDashpotLaw(ForceLaw):
 
     def held_displacement(self, contacts: Contacts, motion: Motion, displacement: FloatArray) -> FloatArray:
         """ξ with |k_t ξ + x γ v_t| ≤ μ |F_n|, the nearest along that force, (m, d) [length]."""
-        stiffness = self.tangential_stiffness(contacts)[:, None]
         coefficient, speed, sliding = self._dashpot(contacts, motion)
         damped = (self.options.tangential_damping * coefficient)[:, None] * sliding
-        held = _shortened(self._greatest_friction(contacts, coefficient * speed), stiffness * displacement + damped)
-        slipped = np.divide(held - damped, stiffness, out=np.zeros_like(displacement), where=stiffness > 0.0)
-        sticks = np.all(held == stiffness * displacement + damped, axis=1, keepdims=True) & (stiffness > 0.0)
-        return np.where(sticks, displacement, slipped)
+        most = self._greatest_friction(contacts, coefficient * speed)
+        return held_displacement(self.tangential_stiffness(contacts), damped, most, displacement)
 
     def _dashpot(self, contacts: Contacts, motion: Motion) -> tuple[FloatArray, FloatArray, FloatArray]:
         """γ (m,) [force·time/length], and the relative velocity along the normal (m,) and across it (m, d)."""
@@ -136,19 +134,4 @@ class SpringDashpotLaw(ForceLaw):
         """γ, (m,) [force·time/length]."""
         if self.options.restitution is None:
             return np.full(len(mass), self.options.damping or 0.0)
-        logarithm = np.log(self.options.restitution)
-        return np.asarray(-2.0 * logarithm * np.sqrt(mass * self.options.stiffness / (np.pi**2 + logarithm**2)))
-
-
-def _shortened(most: FloatArray, force: FloatArray) -> FloatArray:
-    """Forces (m, d) shortened to ``most`` (m,) where they are longer."""
-    size = np.linalg.norm(force, axis=1)
-    part = np.divide(most, size, out=np.ones_like(size), where=size > most)
-    return np.asarray(part[:, None] * force)
-
-
-def _limited(coefficient: FloatArray, most: FloatArray, velocity: FloatArray) -> FloatArray:
-    """min(coefficient |v|, most) v/|v|, zero at rest, (m, d)."""
-    speed = np.linalg.norm(velocity, axis=1)
-    ratio = np.minimum(coefficient, np.divide(most, speed, out=np.full_like(speed, np.inf), where=speed > 0.0))
-    return np.asarray(ratio[:, None] * velocity)
+        return dashpot_coefficient(self.options.restitution, self.options.stiffness, mass)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from rigidfluid.core.setup.contact_laws import MAY_BE_OWN
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ def check_contact_table(table: ContactTable, interactions: Sequence[InteractionT
         raise SceneError("contact.range", "nothing", "a length above 0 with `law`", "Add the law's reach.")
     if law is None and range_ is not None:
         raise SceneError("contact.range", f"{range_} without a law", "`range` with `law`", "Name the law: `law = …`.")
-    own = dict.fromkeys(("smallest_gap", "restitution", "restitution_stokes", "roughness"), law)
+    own = dict.fromkeys(("smallest_gap", *MAY_BE_OWN, "restitution_stokes", "roughness"), law)
     for key, read in {**own, "impact_speed": law or interactions}.items():
         given = getattr(table, key)
         if not read and given is not None:

@@ -9,7 +9,7 @@ from rigidfluid.core.model.force_law import Between, ForceLaw
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.nested.part_options import own_options, refuse_unread
 from rigidfluid.core.scene.contact_tables import ContactTable, InteractionTable
-from rigidfluid.core.setup.contact_laws import ContactLaw, has_own_restitution
+from rigidfluid.core.setup.contact_laws import MAY_BE_OWN, ContactLaw, is_own
 from rigidfluid.registry import DETECTOR, FORCE_LAW, Registry
 
 
@@ -32,14 +32,15 @@ def scene_laws(contact: ContactTable, interactions: Sequence[InteractionTable], 
         part = registry.get(FORCE_LAW, table.law, f"{field}.law")
         others = registry.installed(DETECTOR) if isinstance(table, ContactTable) else []
         refuse_unread(table.options, [part, *others], type(table).model_fields, field)
-        own = {"restitution": table.restitution} if has_own_restitution(part) and table.restitution is not None else {}
+        common = {key: getattr(table, key) for key in MAY_BE_OWN if getattr(table, key) is not None}
+        own = {key: value for key, value in common.items() if is_own(key, part)}
         options = own_options(part, {**table.options, **own}, field)
         found.append(
             ContactLaw(
                 law=Selected[ForceLaw](part, options),
                 range=table.range,
                 smallest_gap=table.smallest_gap,
-                restitution=table.restitution,
+                **common,
                 restitution_stokes=table.restitution_stokes,
                 roughness=table.roughness,
                 between=between,

@@ -25,6 +25,21 @@ _ROUGHNESS = Field(
     description="Gap at which the film ends and surfaces touch: an impact is a dry one behind the film down to this "
     "gap, whether the mesh resolves it or not; at most `smallest_gap` [length]",
 )
+_FRICTION = Field(
+    default=None,
+    ge=0,
+    description="Coefficient of friction μ: the largest ratio of tangential to normal force, 0 if not given [1]",
+)
+_TANGENTIAL_STIFFNESS = Field(
+    default=None,
+    description="Stiffness of springs along the surfaces, which hold static friction; 2/7 of the law's down to "
+    "`smallest_gap` if not given, and no springs with `spring-dashpot` [force/length]",
+)
+_TANGENTIAL_DAMPING = Field(
+    default=None,
+    ge=0,
+    description="Ratio of the dashpot's coefficient along the surfaces to that by `restitution`, 1 if not given [1]",
+)
 
 
 class ContactTable(OpenTable):
@@ -41,6 +56,9 @@ class ContactTable(OpenTable):
     restitution: float | None = _RESTITUTION
     restitution_stokes: float | None = _RESTITUTION_STOKES
     roughness: Positive | None = _ROUGHNESS
+    friction: float | None = _FRICTION
+    tangential_stiffness: Positive | None = _TANGENTIAL_STIFFNESS
+    tangential_damping: float | None = _TANGENTIAL_DAMPING
     impact_speed: float | None = Field(
         default=None,
         ge=0,
@@ -68,6 +86,9 @@ class InteractionTable(OpenTable):
     restitution: float | None = _RESTITUTION
     restitution_stokes: float | None = _RESTITUTION_STOKES
     roughness: Positive | None = _ROUGHNESS
+    friction: float | None = _FRICTION
+    tangential_stiffness: Positive | None = _TANGENTIAL_STIFFNESS
+    tangential_damping: float | None = _TANGENTIAL_DAMPING
     between: Literal["all", "walls", "pairs"] = Field(
         default="all", description="Contacts at `walls`, of `pairs` of bodies, or both"
     )

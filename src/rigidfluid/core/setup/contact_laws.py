@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 from pydantic import Field
 
 from rigidfluid.core.contact.laws.film_loss import FilmLoss
+from rigidfluid.core.contact.laws.friction import Friction, Rubbing
 from rigidfluid.core.contact.laws.restitution import Restitution
 from rigidfluid.core.contact.laws.rough_film import RoughFilm
 from rigidfluid.core.geometry.piece import Piece, all_names
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
 
 SMALLEST_GAP = 0.25
 """The smallest gap wanted over the range of the law, if none is given."""
+
+MAY_BE_OWN = "restitution", "friction", "tangential_stiffness", "tangential_damping"
+"""Keys that every law may have, and that some have as options of their own."""
 
 
 @checked
@@ -45,6 +49,12 @@ class ContactLaw:
         β, with which an impact ends with ``restitution`` · exp(-β/St) of its speed, St its Stokes number [1].
     roughness : float, optional
         Gap at which the film ends and surfaces touch, at most the smallest gap, in place of β [length].
+    friction : float, optional
+        Coefficient μ of static and sliding friction; none if not given [1].
+    tangential_stiffness : float, optional
+        Stiffness of springs along the surfaces; 2/7 of the law's at the smallest gap if not given [force/length].
+    tangential_damping : float, optional
+        Ratio of the dashpots' coefficient along the surfaces to the one by the restitution; 1 if not given [1].
     between : str
         Contacts at `walls`, of `pairs` of bodies, or `all`.
     names : sequence of str
@@ -61,6 +71,9 @@ class ContactLaw:
     restitution: Annotated[Positive, Field(le=1)] | None = None
     restitution_stokes: Positive | None = None
     roughness: Positive | None = None
+    friction: Annotated[float, Field(ge=0)] | None = None
+    tangential_stiffness: Positive | None = None
+    tangential_damping: Annotated[float, Field(ge=0)] | None = None
     between: Between = "all"
     names: Annotated[tuple[str, ...], AnyRow, Field(max_length=2)] = ()
     field: str | None = None
@@ -91,14 +104,31 @@ class ContactLaw:
         part, options = self.law.part, self.law.options
         try:
             law = part(options, self.range, loads)
-            loss = self._film_loss(loads)
-            if loss is None and (self.restitution in (None, 1.0) or has_own_restitution(part)):
-                return law
-            return Restitution(law, self.restitution or 1.0, loss)
+            loss, own = self._film_loss(loads), is_own("restitution", part)
+            if loss is not None or not (self.restitution in (None, 1.0) or own):
+                law = Restitution(law, self.restitution or 1.0, loss)
+            rubbing = self._rubbing()
+            return law if rubbing is None else Friction(law, rubbing)
         except SceneError as error:  # a law does not know its table
             subject = f"{self.field}.{error.subject.removeprefix('contact.')}"
             allowed = (error.allowed or "").replace("contact.range", f"{self.field}.range") or None
             raise SceneError(subject, error.found, allowed, error.remedy) from None
+
+    def _rubbing(self) -> Rubbing | None:
+        """Numbers of friction that is not the law's own; None without any."""
+        part = self.law.part
+        keys = {key: getattr(self, key) for key in MAY_BE_OWN[1:] if not is_own(key, part)}
+        along = [key for key in keys if key != "friction" and keys[key] is not None]
+        if is_own("friction", part) and along:
+            allowed = f"a law whose friction is not its own, as it is with {part.name!r}"
+            raise SceneError(f"{self.field}.{along[0]}", keys[along[0]], allowed, "Remove it, or choose another law.")
+        if keys.get("friction"):
+            damping = 1.0 if self.tangential_damping is None else self.tangential_damping
+            return Rubbing(keys["friction"], self.tangential_stiffness, damping, self.aim)
+        if along:
+            remedy = "Remove it, or add `friction`."
+            raise SceneError(f"{self.field}.{along[0]}", keys[along[0]], "`friction` above 0 beside it", remedy)
+        return None
 
     def _film_loss(self, loads: Loads) -> FilmLoss | RoughFilm | None:
         """Loss of impacts that the film takes a part in; None if they are dry."""
@@ -110,7 +140,7 @@ class ContactLaw:
         if len(wanted) == 2:
             allowed = f"one of both, as {self.field}.restitution_stokes is the film's whole loss too"
             raise SceneError(*first, allowed, "Remove either.")
-        if has_own_restitution(self.law.part):
+        if is_own("restitution", self.law.part):
             allowed = f"a law whose restitution is not its own, as it is with {self.law.part.name!r}"
             raise SceneError(*first, allowed, "Remove it, or choose another law.")
         if loads.film is None:
@@ -140,9 +170,9 @@ def told_apart(laws: Sequence[ContactLaw], pieces: Iterable[Piece]) -> tuple[Con
     )
 
 
-def has_own_restitution(law: type[ForceLaw]) -> bool:
-    """Tell whether the restitution is an option of the law itself."""
-    return "restitution" in law.Options.model_fields
+def is_own(key: str, law: type[ForceLaw]) -> bool:
+    """Tell whether a ``key`` of MAY_BE_OWN is an option of the law itself."""
+    return key in law.Options.model_fields
 
 
 def check_laws(model: Model) -> None:

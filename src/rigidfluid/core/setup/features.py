@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rigidfluid.core.contact.laws.restitution import Restitution, without_restitution
+from rigidfluid.core.contact.laws.added_law import added, bare
+from rigidfluid.core.contact.laws.friction import Friction
+from rigidfluid.core.contact.laws.restitution import Restitution
 
 if TYPE_CHECKING:
     from rigidfluid.core.fluid.fluid_problem import FluidProblem
@@ -104,10 +106,12 @@ def _joints(system: System) -> Feature:
 
 def _law(system: System, interaction: Interaction) -> str:
     law = interaction.law
-    text = f"law {without_restitution(law).name!r} below a gap of {law.range}"
-    if isinstance(law, Restitution):
-        text += f" with a restitution of {law.restitution:g}"
-        text += "" if law.loss is None else law.loss.words
+    text = f"law {bare(law).name!r} below a gap of {law.range}"
+    if restitution := added(Restitution, law):
+        text += f" with a restitution of {restitution.restitution:g}"
+        text += "" if restitution.loss is None else restitution.loss.words
+    if friction := added(Friction, law):
+        text += f" and a friction of {friction.friction:g}"
     if interaction.between != "all":
         text += {"walls": " at walls", "pairs": " between bodies"}[interaction.between]
     names = " and ".join(system.surfaces[surface] for surface in interaction.surfaces)

@@ -6,8 +6,10 @@ from collections.abc import Sequence
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+from rigidfluid.core.contact.laws.added_law import added
 from rigidfluid.core.contact.laws.restitution import Restitution
 from rigidfluid.core.contact.laws.rough_film import RoughFilm
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.errors import SceneError
 
@@ -63,15 +65,18 @@ def _check_rolling(interactions: Sequence[Interaction], stepping: ContactSteppin
 
 def _check_films(interactions: Sequence[Interaction]) -> None:
     """Refuse the law of a film where surfaces have a roughness, down to which their own law counts the film."""
-    rough = [
-        each for each in interactions if isinstance(each.law, Restitution) and isinstance(each.law.loss, RoughFilm)
-    ]
+    rough = [each for each in interactions if _is_rough(each.law)]
     for film in (each for each in interactions if each.law.film):
         for one in rough:
             if _may_meet(one, film):
                 found, allowed = f"{film.law.name!r} where {one.field} has a roughness", "a film that is counted once"
                 remedy = "Remove either, or keep them to different contacts by `between` or `names`."
                 raise SceneError(f"{film.field}.law", found, allowed, remedy)
+
+
+def _is_rough(law: ForceLaw) -> bool:
+    restitution = added(Restitution, law)
+    return restitution is not None and isinstance(restitution.loss, RoughFilm)
 
 
 def _may_meet(one: Interaction, other: Interaction) -> bool:

@@ -1,4 +1,4 @@
-"""Springs along surfaces in a fluid: a disk that must not turn, on a slope that friction holds."""
+"""Springs along surfaces in a fluid: a disk that must not turn, on a slope that friction holds, and in an impact."""
 
 from functools import cache
 
@@ -40,12 +40,35 @@ def disk_on_slope(end, step=4e-3, output=None, mesh=None, **keys):
     )
 
 
-@cache
-def held(step, stiffness=SPRING["tangential_stiffness"], stepping="substeps"):
-    simulation = Simulation(disk_on_slope(0.1, step, tangential_stiffness=stiffness, stepping=stepping), None, False)
+def run_to_end(scene):
+    simulation = Simulation(scene, None, False)
     while not simulation.ended:
         simulation.step()
     return simulation.state
+
+
+@cache
+def held(step, stiffness=SPRING["tangential_stiffness"], stepping="substeps"):
+    return run_to_end(disk_on_slope(0.1, step, tangential_stiffness=stiffness, stepping=stepping))
+
+
+@pytest.mark.parametrize("step", [4e-3, pytest.param(1e-3, marks=pytest.mark.long)])
+def test_a_disk_that_hits_obliquely_loses_by_friction_and_film_and_makes_no_energy(step):
+    """Film, roughness, restitution and friction act in one impact. Of the change of speed across the wall the film
+    takes a part, which does not press the surfaces together; μ times the rest is lost along the wall."""
+    data = disk_on_slope(0.05, step).to_dict()
+    data["fluid"] |= {"gravity": [0.0, 0.0], "viscosity": 1e-3}
+    data["body"][0] |= {"position": [0.4, RADIUS + 1.5 * RANGE], "velocity": [2.0, -2.0]}
+    normal = {"law": "normal", "range": RANGE, "epsilon": "auto", "restitution": 0.8, "roughness": 1e-4}
+    ended = {}
+    for friction in (0.0, 0.2):
+        data["contact"] = normal | {"friction": friction}
+        state = run_to_end(scene_from_dict(data))
+        assert abs(state.ledger.residual) < 5e-3 * state.ledger.initial
+        ended[friction] = state.twist.velocity[0]
+    change = ended[0.2] - ended[0.0]
+    assert ended[0.2][1] > 0.5
+    assert 0.7 < -change[0] / (0.2 * (2.0 + ended[0.2][1])) < 1.0
 
 
 @pytest.mark.parametrize("step", [4e-3, 2e-3])

@@ -56,6 +56,7 @@ class Repulsion(ForceLaw):
 
     def __init__(self, options: PartOptions, range: float, loads: Loads | None = None) -> None:
         super().__init__(options, range, loads)
+        self._held: tuple[tuple[bytes, ...], FloatArray] | None = None
         if AUTO in (self.options.epsilon, self.options.epsilon_wall):
             self.loads = require_loads(loads, range)
 
@@ -99,8 +100,20 @@ class Repulsion(ForceLaw):
         if wanted != AUTO:
             return np.full(len(contacts), wanted)
         loads = require_loads(self.loads, self.range)
-        held = work_to_stop(contacts, loads, self.range)
+        held = self._work_to_stop(contacts, loads)
         stored = self.unit_energy(replace(contacts, gap=np.full(len(contacts), loads.smallest_gap)))
         epsilon = np.full(len(contacts), np.inf)
         np.divide(stored, held, out=epsilon, where=held > 0.0)
         return epsilon
+
+    def _work_to_stop(self, contacts: Contacts, loads: Loads) -> FloatArray:
+        """Work of impacts (m,) [energy], kept for the next question: in substeps the same pairs are asked many times,
+        and without attraction the work is that of the pair wherever it is."""
+        if loads.attraction is not None:
+            return work_to_stop(contacts, loads, self.range)
+        pairs = tuple(
+            column.tobytes() for column in (contacts.body_a, contacts.body_b, contacts.radius_a, contacts.radius_b)
+        )
+        if self._held is None or self._held[0] != pairs:
+            self._held = pairs, work_to_stop(contacts, loads, self.range)
+        return self._held[1]

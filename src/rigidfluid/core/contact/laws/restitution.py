@@ -6,6 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from rigidfluid.core.contact.laws.added_law import AddedLaw
 from rigidfluid.core.contact.laws.film_loss import FilmLoss
 from rigidfluid.core.contact.laws.hunt_crossley import LEAST, Hardening, excess, excess_by_speed, hardening
 from rigidfluid.core.contact.laws.rough_film import RoughFilm
@@ -16,7 +17,7 @@ from rigidfluid.core.model.types import Contacts, Motion
 from rigidfluid.errors import SceneError
 
 
-class Restitution(ForceLaw):
+class Restitution(AddedLaw):
     """Law F = f (1 + x ẇ/v), f the force of a ``law`` with the energy U, ẇ the closing speed, v that at range.
 
     x follows from the ``restitution`` e, from LEAST to 1, by x (1 + e) = ln[(1 + x)/(1 - e x)]: a head-on impact of two
@@ -39,10 +40,9 @@ class Restitution(ForceLaw):
     """
 
     name: ClassVar[str] = "restitution"
-    dissipative: bool = True
 
     def __init__(self, law: ForceLaw, restitution: float, loss: FilmLoss | RoughFilm | None = None) -> None:
-        super().__init__(law.options, law.range, law.loads)
+        super().__init__(law)
         if not law.conservative or law.dissipative:
             kind = "dampers of its own" if law.dissipative else "no energy to give back"
             remedy = "Leave `restitution` and `restitution_stokes` out, or choose another law."
@@ -53,31 +53,8 @@ class Restitution(ForceLaw):
             raise SceneError("contact.law", f"a restitution for {law.name!r}", "a law that repels", remedy)
         if restitution < LEAST:
             raise SceneError("contact.restitution", restitution, f"from {LEAST} to 1", f"Set it to {LEAST} or more.")
-        self.law = law
         self.restitution = restitution
         self.loss = loss
-        self.loads = law.loads
-        self.sign = law.sign
-        self.overlap = law.overlap
-        self.vanishes_at_range = law.vanishes_at_range
-        self.film = law.film
-
-    @property
-    def ranges(self) -> tuple[float, ...]:
-        """Ranges of the law [length]."""
-        return self.law.ranges
-
-    def force(self, contacts: Contacts) -> FloatArray:
-        """Force f of the law on ``body_a``, (m, d) [force]."""
-        return self.law.force(contacts)
-
-    def energy(self, contacts: Contacts) -> FloatArray:
-        """Energy U of the law, (m,) [energy]."""
-        return self.law.energy(contacts)
-
-    def stiffness(self, contacts: Contacts) -> FloatArray:
-        """Stiffness of the law, (m,) [force/length]."""
-        return self.law.stiffness(contacts)
 
     def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
         """Damping force f x ẇ/v along the normal on ``body_a``, (m, d) [force]."""
@@ -104,8 +81,3 @@ class Restitution(ForceLaw):
             return hardening(np.maximum(restitution(speed), LEAST))
 
         return excess_by_speed(closing, stored, hardening_at)
-
-
-def without_restitution(law: ForceLaw) -> ForceLaw:
-    """Law that gives force and energy."""
-    return law.law if isinstance(law, Restitution) else law

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from rigidfluid.core.contact.laws.added_law import bare
 from rigidfluid.core.contact.laws.loads import closing_speed, impact_energy, stacked_weight
 from rigidfluid.core.contact.laws.repulsion import AUTO, Repulsion
-from rigidfluid.core.contact.laws.restitution import without_restitution
 from rigidfluid.core.contact.laws.work_to_stop import share_left
 from rigidfluid.core.contact.pairs.representative_contacts import free, pair_contacts, representatives, wall_contacts
 from rigidfluid.core.model.contacts import select
@@ -29,7 +29,7 @@ def chosen_strengths(system: System) -> list[dict[str, Any]]:
 
 
 def _chosen(system: System, interaction: Interaction) -> Iterator[dict[str, Any]]:
-    law = without_restitution(interaction.law)
+    law = bare(interaction.law)
     if not isinstance(law, Repulsion) or law.loads is None:
         return
     between, at_walls = law.options.epsilon, law.options.epsilon_wall

@@ -1,0 +1,99 @@
+"""Coulomb's friction with memory, for any law that repels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from rigidfluid.core.contact.laws.added_law import AddedLaw, added
+from rigidfluid.core.contact.laws.restitution import Restitution
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.mechanics.coulomb import dashpot_coefficient, held_displacement, sliding_friction
+from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.types import Contacts, Motion
+from rigidfluid.errors import SceneError
+
+STIFFNESS_RATIO = 2.0 / 7.0
+"""Tangential over normal stiffness: spheres then swing as fast along the surfaces, where they turn too, as across
+them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rubbing:
+    """Numbers of friction: the coefficient ``friction`` μ [1]; ``stiffness`` k_t of springs along the surfaces, None
+    for the share STIFFNESS_RATIO of the law's own up to the ``gap`` [length] to which impacts press [force/length];
+    ``damping`` x, the ratio of the dashpots' coefficient to the one with the dry restitution [1]."""
+
+    friction: float
+    stiffness: float | None
+    damping: float
+    gap: float
+
+
+class Friction(AddedLaw):
+    """Law F = F_n n - k_t ξ - min(x γ |v_t|, μ |F_n|) v_t/|v_t|, the force along the surfaces at most μ |F_n|.
+
+    F_n is the normal force of a ``law``, its dampers included. ξ is the displacement of the surfaces past each other
+    since they touch, shortened where they slip until the bound holds (Cundall and Strack, Géotechnique 29 (1979) 47,
+    doi:10.1680/geot.1979.29.1.47). γ = -2 ln e √(m k_t/(π² + ln² e)), with the dry restitution e of the law and the
+    effective mass m; it is zero without a restitution. If not given, k_t is 2/7 of the law's force at the smallest gap
+    wanted over the way from range to there: impacts of a sphere then have one period in both directions (Schäfer,
+    Dippel and Wolf, J. Phys. I 6 (1996) 5, doi:10.1051/jp1:1996129).
+
+    SceneError is raised for a law that does not repel.
+    """
+
+    name: ClassVar[str] = "friction"
+    sticking: bool = True
+
+    def __init__(self, law: ForceLaw, rubbing: Rubbing) -> None:
+        super().__init__(law)
+        if not law.keeps_apart or law.sign == "attracts":
+            remedy = "Leave `friction` out, and give it to the law that repels."
+            raise SceneError("contact.law", f"a friction for {law.name!r}", "a law that repels", remedy)
+        self.friction = rubbing.friction
+        self.couples = law.couples
+        self._rubbing = rubbing
+        restitution = added(Restitution, law)
+        self._restitution = 1.0 if restitution is None else restitution.restitution
+
+    def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
+        """Damping of the law, and the dashpots along the surfaces on ``body_a``, (m, d) [force]."""
+        damping = self.law.damping(contacts, motion)
+        return damping - self._dashpots(contacts, motion, self._most(contacts, damping))
+
+    def couple(self, contacts: Contacts, motion: Motion) -> FloatArray:
+        """Couples of the law on ``body_a``, (m, k) [force·length]."""
+        return self.law.couple(contacts, motion)
+
+    def tangential_stiffness(self, contacts: Contacts) -> FloatArray:
+        """k_t within range, (m,) [force/length]."""
+        given = self._rubbing.stiffness
+        stiffness = self._share(contacts) if given is None else np.full_like(contacts.gap, given)
+        return np.where(contacts.gap < self.range, stiffness, 0.0)
+
+    def held_displacement(self, contacts: Contacts, motion: Motion, displacement: FloatArray) -> FloatArray:
+        """ξ with a force of at most μ |F_n|, the nearest along that force, (m, d) [length]."""
+        most = self._most(contacts, self.law.damping(contacts, motion))
+        damped = self._dashpots(contacts, motion, most)
+        return held_displacement(self.tangential_stiffness(contacts), damped, most, displacement)
+
+    def _share(self, contacts: Contacts) -> FloatArray:
+        """STIFFNESS_RATIO of the force at the smallest gap, over the way from range to there, (m,) [force/length]."""
+        gap = self._rubbing.gap
+        pressed = replace(contacts, gap=np.full_like(contacts.gap, gap))
+        force = np.sum(self.law.force(pressed) * contacts.normal, axis=1)
+        return np.asarray(STIFFNESS_RATIO * np.maximum(force, 0.0) / (self.range - gap))
+
+    def _most(self, contacts: Contacts, damping: FloatArray) -> FloatArray:
+        """μ |F_n|, (m,) [force], with the law's ``damping`` (m, d)."""
+        normal = np.sum((self.law.force(contacts) + damping) * contacts.normal, axis=1)
+        return np.asarray(self.friction * np.abs(normal))
+
+    def _dashpots(self, contacts: Contacts, motion: Motion, most: FloatArray) -> FloatArray:
+        """min(x γ |v_t|, ``most``) v_t/|v_t|, (m, d) [force]."""
+        sliding = motion.velocity - np.sum(motion.velocity * contacts.normal, axis=1)[:, None] * contacts.normal
+        coefficient = dashpot_coefficient(self._restitution, self.tangential_stiffness(contacts), motion.mass)
+        return sliding_friction(self._rubbing.damping * coefficient, most, sliding)
