@@ -25,7 +25,6 @@ def check_interactions(
     """Refuse, with SceneError, laws that would hold the same displacement along surfaces, or count a film twice, and
     those with an option that the shapes of their ``bodies`` or ``walls`` do not allow."""
     _check_sticking(interactions)
-    _check_rolling(interactions, stepping)
     _check_films(interactions)
     for interaction in interactions:
         if interaction.law.round_option:
@@ -53,14 +52,6 @@ def _check_sticking(interactions: Sequence[Interaction]) -> None:
             found, allowed = f"a spring along surfaces that {one.field} has one along too", "one such law in a contact"
             remedy = "Keep them to different contacts by `between` or `names`."
             raise SceneError(f"{other.field}.law", found, allowed, remedy)
-
-
-def _check_rolling(interactions: Sequence[Interaction], stepping: ContactStepping) -> None:
-    """Refuse springs that resist turning in implicit steps, which take couples from the iteration before."""
-    if stepping.implicit and any(interaction.law.rolling for interaction in interactions):
-        found, allowed = "'implicit' with springs that resist rolling or twisting", "'substeps'"
-        remedy = "Leave it out, or remove `rolling_friction` and `twisting_friction`."
-        raise SceneError("contact.stepping", found, allowed, remedy)
 
 
 def _check_films(interactions: Sequence[Interaction]) -> None:
