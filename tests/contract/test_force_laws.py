@@ -85,7 +85,8 @@ class TestSum(ForceLawContract):
         if request.param == "repulsions":
             laws = (normal, "all", ()), (CentreLaw(CentreLaw.Options(epsilon=2e-6), 0.63 * RANGE), "walls", ())
         else:
-            film = LubricationLaw(LubricationOptions(viscosity=0.1, cutoff=0.1 * RANGE), 0.63 * RANGE)
+            options = LubricationOptions(viscosity=0.1, cutoff=0.1 * RANGE, sliding=True)
+            film = LubricationLaw(options, 0.63 * RANGE)
             spring = SpringDashpotLaw(SpringDashpotOptions(stiffness=1e4, restitution=0.6, friction=0.4), RANGE)
             laws = (normal, "all", ()), (film, "pairs", ()), (spring, "all", (0, 1))
         return SumOfLaws([Interaction("interaction", *law) for law in laws])

@@ -28,7 +28,7 @@ def resolved_gap(mesh: MeshTable, radius: FloatArray) -> FloatArray:
 
 def film_findings(system: System, mesh: MeshTable) -> Iterator[Finding]:
     """Compare the ranges of laws of films with h²/R, the gap where the finest cells h are as wide as the film, √(R
-    gap); a warning where the mesh resolves the film that a law counts as well."""
+    gap); warnings where the mesh resolves the film that a law counts as well, and where a law counts sliding."""
     for design in representative_contacts(system):
         for interaction in design.interactions:
             if interaction.law.film and len(design.contacts):
@@ -39,9 +39,11 @@ def _finding(system: System, interaction: Interaction, contacts: Contacts, mesh:
     radius = with_effective_radii(contacts, system.bodies, system.walls, system.pose).effective_radius
     row = int(np.nanargmax(radius))
     law_range, resolved = interaction.law.range, float(resolved_gap(mesh, radius[row]))
+    names = system.surfaces[contacts.body_a[row]], system.surfaces[contacts.body_b[row]]
+    if interaction.law.couples:
+        yield _counts_sliding(interaction, names)
     if law_range <= TWICE * resolved:
         return
-    names = system.surfaces[contacts.body_a[row]], system.surfaces[contacts.body_b[row]]
     finest = mesh.size_body / 2**mesh.refinements
     text = (
         f"{' and '.join(names)}: the finest cells, {figure(finest)}, resolve films down to gaps of {figure(resolved)}"
@@ -50,3 +52,9 @@ def _finding(system: System, interaction: Interaction, contacts: Contacts, mesh:
     remedy = f"Leave the law out, set {interaction.field}.range to {round_down(resolved)}, or lower mesh.refinements."
     found = {"range": law_range, "resolved": resolved, "finest_cell": finest}
     yield Finding("warning", QUESTION, names, text, remedy, found, {"range": resolved})
+
+
+def _counts_sliding(interaction: Interaction, names: tuple[str, str]) -> Finding:
+    text = f"{' and '.join(names)}: the mesh resolves sliding and rolling in all gaps that its cells fit into, and"
+    text += f" {interaction.law.name!r} counts them again"
+    return Finding("warning", QUESTION, names, text, f"Set {interaction.field}.sliding to false.")

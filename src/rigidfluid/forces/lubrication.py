@@ -21,14 +21,14 @@ class LubricationOptions(PartOptions):
     """Keys of a table with law ``lubrication``.
 
     ``viscosity``: dynamic, of the film, μ [mass·length^(2-d)/time]. ``cutoff``: the gap below which the resistance
-    grows no further [length]. ``sliding``: whether the film resists sliding and rolling too, which is known of round
-    surfaces; if not, it is the leading term of squeezing.
+    grows no further [length]. ``sliding``: whether the film resists sliding and rolling too, between round and flat
+    surfaces; if not, it is the leading term of squeezing. Meshes mostly resolve sliding where they do not squeezing.
     """
 
     viscosity: float = Field(gt=0, description="Dynamic viscosity μ of the film [mass·length^(2-d)/time]")
     cutoff: float = Field(gt=0, description="Gap below which the resistance grows no further [length]")
     sliding: bool = Field(
-        default=True,
+        default=False,
         description="Whether the film resists sliding and rolling too, for which surfaces must be round or flat; if"
         " not, squeezing by its leading term alone",
     )

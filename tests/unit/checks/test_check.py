@@ -324,6 +324,8 @@ def test_a_film_that_the_mesh_resolves_as_well() -> None:
     assert finding.enough == {"range": pytest.approx(0.00025)}
     assert not answers(without_epsilon(film | {"range": 0.00025}, **more), "film")
     assert not answers(without_epsilon({"law": "normal", "range": 0.02, "epsilon": "auto"}, **more), "film")
+    (finding,) = answers(without_epsilon(film | {"range": 0.00025, "sliding": True}, **more), "film")
+    assert (finding.grade, finding.remedy) == ("warning", "Set contact.sliding to false.")
 
 
 def test_fixed_bodies_need_no_law() -> None:

@@ -25,7 +25,7 @@ LAW = {"law": "spring-dashpot", "range": 0.02, "stiffness": 400.0, "damping": 1.
 BELT = {"on": "bottom", "type": "wall", "velocity": [0.6, 0.0]}
 
 
-FILM = {"law": "lubrication", "range": 0.02, "viscosity": 0.3, "cutoff": 1e-3}
+FILM = {"law": "lubrication", "range": 0.02, "viscosity": 0.3, "cutoff": 1e-3, "sliding": True}
 DRUM = {"on": "drum", "type": "wall", "angular_velocity": 7.0, "centre": [0.4, 0.285]}
 ROUND = {"name": "drum", "type": "sphere", "radius": 0.1, "position": [0.4, 0.285]}
 CHANNEL = {"type": "channel", "lower": [0.0, 0.0], "upper": [1.0, 1.0], "obstacle": [ROUND]}

@@ -14,7 +14,7 @@ from rigidfluid.core.output.history import History
 from rigidfluid.forces.film_resistance import film_resistance
 
 RADIUS, GAP, RANGE, VISCOSITY = 0.1, 2e-3, 0.02, 0.01
-FILM = {"law": "lubrication", "range": RANGE, "cutoff": 1.5e-3, "viscosity": VISCOSITY}
+FILM = {"law": "lubrication", "range": RANGE, "cutoff": 1.5e-3, "viscosity": VISCOSITY, "sliding": True}
 STEPPINGS = pytest.mark.parametrize("stepping", ["substeps", "implicit"])
 
 

@@ -15,7 +15,7 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, Pose
 from rigidfluid.errors import SceneError
 
-FILM = {"law": "lubrication", "range": 1.0, "viscosity": 0.7, "cutoff": 1e-6, "sliding": False}
+FILM = {"law": "lubrication", "range": 1.0, "viscosity": 0.7, "cutoff": 1e-6}
 
 
 def system_tables(*bodies: dict[str, Any]) -> dict[str, Any]:

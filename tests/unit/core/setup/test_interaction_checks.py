@@ -39,10 +39,11 @@ ELLIPSE = {"name": "ellipse", "type": "ellipsoid", "semi_axes": [0.1, 0.05], "de
 )
 def test_a_film_that_resists_sliding_is_for_round_surfaces(where: dict, refused: bool) -> None:
     disk = {"name": "disk", "type": "sphere", "radius": 0.1, "density": 1.0, "position": [0.5, 0.3]}
-    scene = scene_from_dict(dry_tables(disk, ELLIPSE) | {"interaction": [FILM | where]})
+    sliding = FILM | where | {"sliding": True}
+    scene = scene_from_dict(dry_tables(disk, ELLIPSE) | {"interaction": [sliding]})
     if refused:
         with pytest.raises(SceneError, match=r"Set it to false, or keep the law") as told:
             build_system(scene)
         assert told.value.subject == "interaction.0.sliding"
-        scene = scene_from_dict(dry_tables(disk, ELLIPSE) | {"interaction": [FILM | where | {"sliding": False}]})
+        scene = scene_from_dict(dry_tables(disk, ELLIPSE) | {"interaction": [sliding | {"sliding": False}]})
     assert build_system(scene).law is not None

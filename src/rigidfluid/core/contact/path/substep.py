@@ -201,7 +201,7 @@ def _turning_rate(
 ) -> float:
     """Bound of the rate at which dampers along the surfaces and couples slow bodies down [1/time].
 
-    As their power S v² + 2 Q v w + W w² is never negative, it is at most 2 (S v² + W w²).
+    Their power S v² + 2 Q v w + W w², which is never negative, is at most 2 (S v² + W w²).
     """
     deepest = _deepest(law, contacts, approach.energy + law.energy(contacts), force)
     axes, mass = np.eye(contacts.normal.shape[1]), np.ones(len(contacts))
