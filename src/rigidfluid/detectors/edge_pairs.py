@@ -5,8 +5,6 @@
 
 from __future__ import annotations
 
-from math import sqrt
-
 import numpy as np
 from numba import njit
 
@@ -16,7 +14,8 @@ _PARALLEL = 1e-12
 
 @njit(cache=True, nogil=True)
 def passing_edges(points_a, edges_a, points_b, edges_b, reach):
-    """Edges that are nearest inside both of them, within ``reach``: their rows in a and in b, the points of a and of b.
+    """Edges that are nearest inside both of them, within ``reach``: the points of a and of b, with sign 1, and those of
+    the nearest pair of an end and the other edge, with sign -1.
 
     In space; ``points`` (N, 3) and ``edges`` (E, 2) of each.
     """
@@ -38,19 +37,54 @@ def passing_edges(points_a, edges_a, points_b, edges_b, reach):
             t, v = (ar * bb - br * ab) / det, (ar * ab - br * aa) / det
             if 0.0 < t < 1.0 and 0.0 < v < 1.0:
                 rows.append((i, j, t, v))
-    first, second = np.empty((2, len(rows)), np.int64)
-    point_a, point_b = np.empty((2, len(rows), 3))
+    point_a, point_b = np.empty((2, 2 * len(rows), 3))
+    sign = np.empty(2 * len(rows))
     count = 0
     for i, j, t, v in rows:
-        square = 0.0
-        for k in range(3):
-            point_a[count, k] = (1.0 - t) * points_a[edges_a[i, 0], k] + t * points_a[edges_a[i, 1], k]
-            point_b[count, k] = (1.0 - v) * points_b[edges_b[j, 0], k] + v * points_b[edges_b[j, 1], k]
-            square += (point_a[count, k] - point_b[count, k]) ** 2
-        if square > 0.0 and sqrt(square) <= reach:
-            first[count], second[count] = i, j
+        p, q = points_a[edges_a[i, 0]], points_a[edges_a[i, 1]]
+        r, s = points_b[edges_b[j, 0]], points_b[edges_b[j, 1]]
+        near = _between(p, q, t, r, s, v)
+        if not 0.0 < near <= reach * reach:
+            continue
+        least, at, on = np.inf, 0.0, 0.0
+        for end in (0.0, 1.0):
+            at_other = _nearest_part(r, s, p if end == 0.0 else q)
+            square = _between(p, q, end, r, s, at_other)
+            if square < least:
+                least, at, on = square, end, at_other
+            at_other = _nearest_part(p, q, r if end == 0.0 else s)
+            square = _between(p, q, at_other, r, s, end)
+            if square < least:
+                least, at, on = square, at_other, end
+        for place in range(2):
+            if place == 1 and least > reach * reach:
+                break
+            one, other = (t, v) if place == 0 else (at, on)
+            for k in range(3):
+                point_a[count, k] = (1.0 - one) * p[k] + one * q[k]
+                point_b[count, k] = (1.0 - other) * r[k] + other * s[k]
+            sign[count] = 1.0 - 2.0 * place
             count += 1
-    return first[:count], second[:count], point_a[:count], point_b[:count]
+    return point_a[:count], point_b[:count], sign[:count]
+
+
+@njit(cache=True, nogil=True, forceinline=True)
+def _between(p, q, t, r, s, v):
+    """Squared distance of the points at the parts t and v of two edges."""
+    square = 0.0
+    for k in range(3):
+        square += ((1.0 - t) * p[k] + t * q[k] - (1.0 - v) * r[k] - v * s[k]) ** 2
+    return square
+
+
+@njit(cache=True, nogil=True, forceinline=True)
+def _nearest_part(p, q, point):
+    """Part of an edge, from 0 to 1, at which it is nearest to a point."""
+    along = length = 0.0
+    for k in range(3):
+        along += (q[k] - p[k]) * (point[k] - p[k])
+        length += (q[k] - p[k]) ** 2
+    return min(max(along / length, 0.0), 1.0)
 
 
 @njit(cache=True, nogil=True, forceinline=True)

@@ -18,14 +18,11 @@ _FLAT = 1e-9
 
 @dataclass(frozen=True)
 class Features:
-    """``corners`` (c,), rows of points, and ``edges`` (e, 2), empty in the plane, with their mean unit normals
-    ``corner_normals`` (c, d) and ``edge_normals`` (e, d); ``downhill`` (e, 2, d), directions across the edge into the
-    facets on both sides; ``all_edges`` (E, 2), those that do not stick out too."""
+    """``corners`` (c,), rows of points, and ``edges`` (e, 2), empty in the plane; ``downhill`` (e, 2, d), directions
+    across the edge into the facets on both sides; ``all_edges`` (E, 2), those that do not stick out too."""
 
     corners: IntArray
-    corner_normals: FloatArray
     edges: IntArray
-    edge_normals: FloatArray
     downhill: FloatArray
     all_edges: IntArray
 
@@ -38,9 +35,7 @@ def features_of(surface: FacetSurface) -> Features:
     corners, edges = own[found.corners], own[found.edges].all(axis=1)
     return Features(
         found.corners[corners],
-        found.corner_normals[corners],
         found.edges[edges],
-        found.edge_normals[edges],
         found.downhill[edges],
         found.all_edges[own[found.all_edges].all(axis=1)],
     )
@@ -60,11 +55,10 @@ def _features(facets: Facets) -> Features:
     np.maximum.at(rise, both_ways[:, 0], np.sum(along * normals[both_ways[:, 0]], axis=1))
     corners = np.flatnonzero((rise < -_FLAT) & np.isfinite(rise))
     if dimension == 2:
-        none = np.empty((0, 2))
-        return Features(corners, normals[corners], none.astype(np.int64), none, none.reshape(0, 2, 2), edges)
+        return Features(corners, np.empty((0, 2), dtype=np.int64), np.empty((0, 2, 2)), edges)
     mean, downhill = _sides(points, vertices, ridges)
     sharp = np.flatnonzero(np.all(np.einsum("esk,ek->es", downhill, mean) < -_FLAT, axis=1))
-    return Features(corners, normals[corners], edges[sharp], mean[sharp], downhill[sharp], edges)
+    return Features(corners, edges[sharp], downhill[sharp], edges)
 
 
 def _sides(points: FloatArray, vertices: IntArray, ridges: Ridges) -> tuple[FloatArray, FloatArray]:

@@ -62,6 +62,7 @@ class FacetDetector(Detector):
         shapes = {shape_key(body): Solid(FacetSurface(body.facets)) for body in bodies if body.facets is not None}
         self._solids = [shapes.get(shape_key(body)) for body in bodies]
         self._solids += [Solid(wall.shape) if isinstance(wall.shape, FacetSurface) else None for wall in walls]
+        self.signed = sum(solid is not None for solid in self._solids) > 1 and bodies[0].dimension == 3
         self._faceted = np.array([solid is not None for solid in self._solids], dtype=bool)
         smooth = [index for index, body in enumerate(bodies) if body.semi_axes is not None]
         self._smooth = np.array(smooth, dtype=np.int64)
@@ -160,7 +161,8 @@ class FacetDetector(Detector):
         near = ellipsoid_touches(turned, facets.solid.surface, facets.solid.features, reach)
         foot, normal = facets.lab(near.foot), near.normal @ facets.rotation.T
         point = foot + near.distance[:, None] * normal
-        return Places(point, foot, normal, near.distance) if body == a else Places(foot, point, -normal, near.distance)
+        found = Places(point, foot, normal, near.distance, np.ones(len(foot)))
+        return found if body == a else found._replace(point_a=foot, point_b=point, normal=-normal)
 
     def _smooth_pair_contacts(self, pose: Pose, reach: float) -> list[Contacts]:
         """Contacts of balls and ellipsoids with each other, and of the latter with flat and round walls."""
@@ -184,6 +186,7 @@ class FacetDetector(Detector):
             radius_a=self._radii[a],
             radius_b=self._radii[b],
             at_wall=b >= len(self.bodies),
+            sign=touches.sign,
         )
 
 

@@ -52,29 +52,32 @@ class PlacedFacets(NamedTuple):
 
 
 class Places(NamedTuple):
-    """Places of one pair: ``point_a``, ``point_b``, ``normal`` (m, d) from b to a, ``gap`` (m,)."""
+    """Places of one pair: ``point_a``, ``point_b``, ``normal`` (m, d) from b to a, ``gap`` (m,), and the ``sign`` (m,)
+    with which they count."""
 
     point_a: FloatArray
     point_b: FloatArray
     normal: FloatArray
     gap: FloatArray
+    sign: FloatArray
 
 
 def passing_edges(a: PlacedFacets, b: PlacedFacets, reach: float) -> Places:
-    """Edges of both that pass each other within ``reach`` [length], in space."""
+    """Edges of both that pass each other within ``reach`` [length], in space; each pair once more at the end that is
+    nearest to the other edge, with sign -1.
+
+    The nearest points move to such an end before the edges cease to pass, and edges pass at their ends when they are
+    parallel. So the energy of both contacts fades to zero there.
+    """
     from rigidfluid.detectors.edge_pairs import passing_edges
 
     points_a, points_b, both = a.points, b.points, (a.solid.features, b.solid.features)
-    close_a = _near_boxes(points_a[both[0].edges], b, reach)
-    close_b = _near_boxes(points_b[both[1].edges], a, reach)
-    edges_a, edges_b = both[0].edges[close_a], both[1].edges[close_b]
-    first, second, point_a, point_b = passing_edges(points_a, edges_a, points_b, edges_b, reach)
+    edges_a = both[0].edges[_near_boxes(points_a[both[0].edges], b, reach)]
+    edges_b = both[1].edges[_near_boxes(points_b[both[1].edges], a, reach)]
+    point_a, point_b, sign = passing_edges(points_a, edges_a, points_b, edges_b, reach)
     away = point_a - point_b
     gap = np.linalg.norm(away, axis=1)
-    normal = away / gap[:, None]
-    towards_b = np.sum(both[0].edge_normals[close_a][first] @ a.rotation.T * normal, axis=1) < 0
-    towards_a = np.sum(both[1].edge_normals[close_b][second] @ b.rotation.T * normal, axis=1) > 0
-    return Places(*(each[towards_a & towards_b] for each in (point_a, point_b, normal, gap)))
+    return Places(point_a, point_b, away / gap[:, None], gap, sign)
 
 
 def _near_boxes(groups: FloatArray, other: PlacedFacets, reach: float) -> BoolArray:
@@ -88,7 +91,7 @@ def _near_boxes(groups: FloatArray, other: PlacedFacets, reach: float) -> BoolAr
 def shallowest_piercing(a: PlacedFacets, b: PlacedFacets) -> Places:
     """The shallowest edge that goes through a facet, if any does, by its deeper end."""
     one, other = _piercing_edges(a, b), _piercing_edges(b, a)
-    turned = Places(other.point_b, other.point_a, -other.normal, other.gap)
+    turned = other._replace(point_a=other.point_b, point_b=other.point_a, normal=-other.normal)
     both = Places(*(np.concatenate(each) for each in zip(one, turned, strict=True)))
     rows = [int(np.argmax(both.gap))] if len(both.gap) else []
     return Places(*(each[rows] for each in both))
@@ -107,4 +110,4 @@ def _piercing_edges(a: PlacedFacets, b: PlacedFacets) -> Places:
     deeper = np.argmin(heights, axis=1)
     rows = np.arange(len(crossed))
     gap, end = np.minimum(heights[rows, deeper], 0.0), ends[rows, deeper]
-    return Places(b.lab(end), b.lab(end - gap[:, None] * normal), normal @ b.rotation.T, gap)
+    return Places(b.lab(end), b.lab(end - gap[:, None] * normal), normal @ b.rotation.T, gap, np.ones(len(gap)))

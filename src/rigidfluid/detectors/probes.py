@@ -88,7 +88,8 @@ class Probes:
             there = rows[found.point]
             foot, normal = placed.lab(other[there], found.foot), placed.turned(other[there], found.normal)
             point_a, gap = place[there] - radius[there, None] * normal, found.distance - radius[there]
-            parts.append(Touches(pair[there], point_a, foot, normal, gap).turned(row[there] >= len(pairs.a)))
+            found_here = Touches(pair[there], point_a, foot, normal, gap, np.ones(len(gap)))
+            parts.append(found_here.turned(row[there] >= len(pairs.a)))
         return all_touches(parts, self._points.shape[1])
 
     def boxes_meet(self, own: IntArray, other: IntArray, placed: Placement, reach: float | FloatArray) -> BoolArray:

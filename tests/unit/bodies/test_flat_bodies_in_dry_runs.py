@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import pytest
+from dry_scenes import dry_scene
+from facet_shapes import CUBE, TRIANGLES, binary_stl
 from flat_bodies import DOMINO_STEP, GRAVITY, HEIGHT, PITCH, brick_wall, domino_row, gear_pair
 from slopes import FRICTION, block_on_slope
 
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.mechanics.rigid import rotate
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene
 
@@ -98,3 +104,56 @@ def test_a_gear_pair_turns_with_the_ratio_of_its_teeth() -> None:
         apart.append(turned[1] + turned[0] * 12 / 18)
     assert turned[0] == pytest.approx(3.2)
     assert np.abs(apart).max() < 0.15 * 2.0 * np.pi / 18
+
+
+STICKING = {
+    "law": "spring-dashpot",
+    "stiffness": 10.0,
+    "restitution": 0.3,
+    "friction": 0.5,
+    "tangential_stiffness": 8.0,
+}
+HIGH = 0.35 + 0.02 - 3e-4
+"""Height of the centre of a cube of side .2 that lies on another one, whose centre is at .15 [length]."""
+
+
+def cube_on_cube(
+    folder: Path, law: dict[str, Any], place: list[float], turn: list[float], end: float, pull: float = 0.0
+) -> Simulation:
+    """A fixed cube, and one above it at a ``place``, turned by a rotation vector; gravity is (pull, 0, -1)."""
+    file = str(binary_stl(folder / "cube.stl", CUBE, TRIANGLES))
+    cube = {"type": "stl", "file": file, "scale": 0.2, "density": 1.0}
+    fixed = cube | {"position": [0.5, 0.5, 0.15], "prescribed": {"velocity": [0.0, 0.0, 0.0]}}
+    orientation = rotate(np.eye(1, 4), np.array([turn]))[0].tolist()
+    free = cube | {"position": place, "orientation": orientation}
+    scene = dry_scene(law | {"range": 0.02}, fixed, free, end=end, step=4e-3, gravity=[pull, 0.0, -1.0])
+    return Simulation(scene, None, False)
+
+
+@pytest.mark.parametrize("stepping", ["substeps", "implicit"])
+def test_a_cube_that_tumbles_on_a_cube_keeps_its_energy(stepping: str, tmp_path: Path) -> None:
+    """Edges of both pass each other, and cease to."""
+    law = {"law": "normal", "epsilon": "auto", "stepping": stepping}
+    simulation = cube_on_cube(tmp_path, law, [0.53, 0.52, 0.45], [0.24, 0.256, 0.192], end=0.6)
+    stepped(simulation, 0.6)
+    state = simulation.state
+    assert np.linalg.norm(state.twist.angular_velocity[1]) > 0.2
+    assert abs(state.ledger.residual) < 1e-3 * abs(state.ledger.gravity)
+
+
+@pytest.mark.long
+def test_a_turned_cube_rests_on_a_cube(tmp_path: Path) -> None:
+    simulation = cube_on_cube(tmp_path, STICKING, [0.53, 0.52, HIGH], [0.0, 0.0, 0.3], end=0.8)
+    stepped(simulation, 0.8)
+    assert np.linalg.norm(simulation.state.twist.velocity[1]) < 1e-6
+    assert np.linalg.norm(simulation.state.twist.angular_velocity[1]) < 1e-6
+
+
+@pytest.mark.long
+def test_a_cube_slides_off_a_cube_as_coulomb_says(tmp_path: Path) -> None:
+    """Its edges are parallel to those below and beyond them, and take no part."""
+    simulation = cube_on_cube(tmp_path, STICKING, [0.5, 0.5, HIGH], [0.0, 0.0, 0.0], end=0.4, pull=0.8)
+    stepped(simulation, 0.2)
+    before = simulation.state.twist.velocity[1, 0]
+    stepped(simulation, 0.4)
+    assert (simulation.state.twist.velocity[1, 0] - before) / 0.2 == pytest.approx(0.8 - 0.5, rel=5e-3)

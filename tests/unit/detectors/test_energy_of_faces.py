@@ -4,15 +4,17 @@ gradient."""
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from pathlib import Path as File
 
 import numpy as np
 import pytest
-from facet_shapes import BAR, L_SHAPE, SQUARE, polygon
+from facet_shapes import BAR, CUBE, L_SHAPE, SQUARE, TRIANGLES, binary_stl, polygon, polyhedron
 
 from rigidfluid.core.geometry.facet_surface import FacetSurface
 from rigidfluid.core.geometry.facets import Facets
 from rigidfluid.core.geometry.surface import Plane
 from rigidfluid.core.geometry.wall import Wall
+from rigidfluid.core.mechanics.rigid import rotate
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Pose
 from rigidfluid.detectors.facets import FacetDetector
@@ -40,7 +42,7 @@ def planar(rows: Sequence[Row]) -> Pose:
 
 
 def energy(contacts: Contacts) -> float:
-    return 0.5 * float(np.sum(np.maximum(RANGE - contacts.gap, 0.0) ** 2))
+    return 0.5 * float(np.sum(contacts.sign * np.maximum(RANGE - contacts.gap, 0.0) ** 2))
 
 
 def greatest_jump(energy_at: Callable[[float], float]) -> tuple[float, float]:
@@ -121,3 +123,50 @@ def test_forces_are_the_gradient_of_the_energy(motion: str) -> None:
             assert (ends[1] - ends[0]) / (2.0 * step) == pytest.approx(expected, abs=2e-6)
         checked += len(contacts) > 0
     assert checked > 5
+
+
+CUBES: dict[str, Callable[[float], tuple[list[float], list[float]]]] = {
+    "slides along": lambda s: ([2.6 * s - 1.3, 0.2, 1.05], [0.0, 0.0, 0.0]),
+    "slides aslant": lambda s: ([2.6 * s - 1.3, 0.2, 1.08], [0.03, 0.02, 0.5]),
+    "turns in its place": lambda s: ([0.0, 0.0, 1.05], [0.0, 0.0, 0.4 * s - 0.2]),
+    "turns beside": lambda s: ([1.0, 0.0, 1.05], [0.0, 0.0, 0.4 * s - 0.2]),
+    "tilts through flat": lambda s: ([0.2, 0.1, 1.12], [0.4 * s - 0.2, 0.0, 0.0]),
+    "tilts through flat, turned": lambda s: ([0.2, 0.1, 1.12], [0.4 * s - 0.2, 0.0, 0.5]),
+}
+
+
+@pytest.fixture
+def two_cubes(tmp_path: File) -> FacetDetector:
+    cube = polyhedron(binary_stl(tmp_path / "cube.stl", CUBE, TRIANGLES))
+    return FacetDetector(PartOptions(), [cube, cube], [])
+
+
+def cubes(place: list[float], turn: list[float]) -> Pose:
+    """A cube at a place, turned by a rotation vector, and one at the origin."""
+    upright = np.eye(1, 4)
+    return Pose(np.array([place, [0.0] * 3]), np.vstack([rotate(upright, np.array([turn])), upright]))
+
+
+@pytest.mark.parametrize("motion", CUBES)
+def test_the_energy_of_two_cubes_has_no_jump(motion: str, two_cubes: FacetDetector) -> None:
+    """Edges that pass each other come and go with a contact of the sign -1 at the end where they do."""
+    jump, greatest = greatest_jump(lambda s: energy(two_cubes.detect(cubes(*CUBES[motion](s)), None, RANGE)))
+    assert greatest > 1e-3
+    assert jump < 1e-3 * greatest
+
+
+@pytest.mark.parametrize("motion", ["slides aslant", "tilts through flat, turned"])
+def test_forces_of_cubes_are_the_gradient_of_the_energy(motion: str, two_cubes: FacetDetector) -> None:
+    step = 1e-6
+    for s in np.linspace(0.013, 0.987, 21):
+        place, turn = CUBES[motion](s)
+        contacts = two_cubes.detect(cubes(place, turn), None, RANGE)
+        size = contacts.sign * np.maximum(RANGE - contacts.gap, 0.0)
+        force = np.sum(size[:, None] * contacts.normal, axis=0)
+        for axis in range(3):
+            ends = []
+            for sign in (1.0, -1.0):
+                moved = list(place)
+                moved[axis] += sign * step
+                ends.append(energy(two_cubes.detect(cubes(moved, turn), None, RANGE)))
+            assert (ends[1] - ends[0]) / (2.0 * step) == pytest.approx(force[axis], abs=2e-6)

@@ -14,7 +14,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.answers import refuse_other_rows, refuse_other_shape
 from rigidfluid.core.geometry.surface import Surface
-from rigidfluid.core.geometry.wall import Wall
+from rigidfluid.core.geometry.wall import Wall, radius_of
 from rigidfluid.core.geometry.wrong import Wrong
 from rigidfluid.core.model.types import Contacts, Pose
 
@@ -27,7 +27,15 @@ _ROUNDING = 1e-9
 _FEW = 4
 """Number of contacts for which no compiler is loaded, in a process that has not loaded it for others."""
 
-_KINDS = {"body_a": "iu", "body_b": "iu", "gap": "fiu", "radius_a": "fiu", "radius_b": "fiu", "at_wall": "b"}
+_KINDS = {
+    "body_a": "iu",
+    "body_b": "iu",
+    "gap": "fiu",
+    "radius_a": "fiu",
+    "radius_b": "fiu",
+    "at_wall": "b",
+    "sign": "fiu",
+}
 _VECTORS = ("point_a", "point_b", "normal")
 
 
@@ -65,10 +73,16 @@ def _are_few(contacts: Contacts) -> bool:
 
 
 def _may_be_corners(a: int, b: int, bodies: Sequence[Surface], walls: Sequence[Wall]) -> bool:
-    """Tell whether both surfaces have corners: two that face each other are one contact for each, as they are a little
-    beside each other."""
-    other = bodies[b] if b < len(bodies) else next(wall.shape for wall in walls if wall.surface == b)
-    return all(getattr(shape, "facets", None) is not None for shape in (bodies[a], other))
+    """Tell whether both surfaces have corners, or one has and the other is a bump: two that face each other are one
+    contact for each, as they are a little beside each other."""
+    if b < len(bodies):
+        return _has_corners(bodies[a]) and _has_corners(bodies[b])
+    wall = next(wall.shape for wall in walls if wall.surface == b)
+    return _has_corners(bodies[a]) and (_has_corners(wall) or 0.0 < radius_of(wall) < np.inf)
+
+
+def _has_corners(shape: Surface) -> bool:
+    return getattr(shape, "facets", None) is not None
 
 
 _NOT_THERE, _NOT_FINITE, _NOT_SORTED, _TWICE, _NOT_APART = range(1, 6)

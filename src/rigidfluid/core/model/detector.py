@@ -38,6 +38,9 @@ class Detector(Part):
     cost: ClassVar[float] = math.inf
     """Time for a near pair over that of `sphere` for two balls [1]; ``auto`` takes the cheapest that is exact."""
 
+    signed: bool = False
+    """Tell whether contacts may have the sign -1."""
+
     def __init__(self, options: PartOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
         self.options = options
         self.bodies = tuple(bodies)

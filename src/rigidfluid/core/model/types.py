@@ -26,6 +26,9 @@ _FROM_RADII: FloatArray = np.empty(0)
 _NO_TURNING: FloatArray = np.empty(0)
 """Placeholder for relative angular velocities that are not given, and are zero."""
 
+_POSITIVE: FloatArray = np.empty(0)
+"""Placeholder for signs that are not given."""
+
 FluidState = Mapping[str, FloatArray]
 """State of a fluid backend between steps, as named arrays, so that a checkpoint can hold it unchanged."""
 
@@ -62,7 +65,8 @@ class Contacts:
     ``point_a``, ``point_b``, ``normal`` (m, d); ``gap`` (m,) [length], negative where they overlap;
     ``radius_a``, ``radius_b`` (m,) radii of curvature [length], infinite on a flat wall, negative on a hollow one, NaN
     where not known; ``at_wall`` (m,): whether b is a wall. ``effective_radius`` (m,): of the ball at a flat wall that
-    squeezes a thin film alike, from the radii if not given, NaN where not known [length].
+    squeezes a thin film alike, from the radii if not given, NaN where not known [length]. ``sign`` (m,): 1, which is
+    taken if it is not given, or -1 of a contact whose energy and forces are taken away, as others count them twice.
     """
 
     body_a: IntArray
@@ -75,8 +79,11 @@ class Contacts:
     radius_b: FloatArray
     at_wall: BoolArray
     effective_radius: FloatArray = field(default_factory=lambda: _FROM_RADII)
+    sign: FloatArray = field(default_factory=lambda: _POSITIVE)
 
     def __post_init__(self) -> None:
+        if self.sign is _POSITIVE:
+            object.__setattr__(self, "sign", np.ones(len(self.gap)))
         if self.effective_radius is _FROM_RADII:
             with np.errstate(divide="ignore"):  # a ball that fills its hollow
                 radius = 1.0 / (1.0 / self.radius_a + 1.0 / self.radius_b)

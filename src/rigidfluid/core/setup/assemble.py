@@ -19,6 +19,7 @@ from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.interactions import acting_together
 from rigidfluid.core.model.motions import Motions
+from rigidfluid.core.model.signed_law import SignedLaw
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Twist
 from rigidfluid.core.nested.placing import initial_pose, initial_twist
@@ -56,6 +57,8 @@ def assemble(model: Model) -> System:
     check_interactions(interactions, model.stepping, model.shapes, model.walls)
     chosen, why = model.detection
     detector, law = chosen.part(chosen.options, model.shapes, model.walls), acting_together(interactions)
+    if law is not None and detector.signed:
+        law = SignedLaw(law)
     backend = model.fluid.backend
     return System(
         dimension=model.dimension,

@@ -33,7 +33,7 @@ def carried_displacement(springs: TangentialSprings | None, contacts: Contacts, 
 def springs_at(contacts: Contacts, displacement: FloatArray, stiffness: FloatArray, pose: Pose) -> TangentialSprings:
     """Springs of this ``displacement`` (m, d) [length] and ``stiffness`` (m,) [force/length] in the ``contacts`` of
     bodies at ``pose``, without those that are not there or relaxed."""
-    chosen = np.flatnonzero((stiffness > 0.0) & displacement.any(axis=1))
+    chosen = np.flatnonzero((stiffness != 0.0) & displacement.any(axis=1))
     near, turned_back = select(contacts, chosen), np.swapaxes(rotation_matrices(pose.orientation), -1, -2)
     return TangentialSprings(
         near.body_a,
@@ -63,7 +63,8 @@ def _matched(springs: TangentialSprings, contacts: Contacts, pose: Pose) -> tupl
     """Rows of springs and of the contacts that they go on in: those of the same pair, of several the nearest to the
     points that the bodies carry along."""
     base = int(max(springs.body_b.max(), contacts.body_b.max())) + 1
-    before, now = (each.body_a * base + each.body_b for each in (springs, contacts))
+    before, now = (2 * (each.body_a * base + each.body_b) for each in (springs, contacts))
+    before, now = before + (springs.stiffness > 0.0), now + (contacts.sign > 0.0)
     if all_different(before) and all_different(now):
         _, mine, theirs = np.intersect1d(before, now, assume_unique=True, return_indices=True)
         return mine, theirs

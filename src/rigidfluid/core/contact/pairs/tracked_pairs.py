@@ -66,8 +66,8 @@ class TrackedPairs:
         return select(near, interacting(self._system, near))
 
     def _numbers(self, contacts: Contacts) -> IntArray:
-        """Number of each contact's pair, in the detectors' order."""
-        return contacts.body_a * len(self._system.surfaces) + contacts.body_b
+        """Number of each contact's pair and sign, in the detectors' order of pairs."""
+        return 2 * (contacts.body_a * len(self._system.surfaces) + contacts.body_b) + (contacts.sign > 0.0)
 
     def _refuse_others(self, found: Contacts, others: np.ndarray) -> None:
         entered = np.flatnonzero(others & (found.gap < self._system.law_range))

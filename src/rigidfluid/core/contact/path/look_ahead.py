@@ -75,7 +75,8 @@ def foreseen(system: System, law: ForceLaw, dynamics: BodyDynamics, size: float,
 
 def _released(system: System, law: ForceLaw, dynamics: BodyDynamics, contacts: Contacts) -> float:
     """Greatest speed of a surface point if a body got all energy that its contacts can release [length/time]."""
-    energy, stored = releasable_energy(law, contacts), np.zeros(len(system.surfaces))
+    contacts, stored = select(contacts, contacts.sign > 0.0), np.zeros(len(system.surfaces))
+    energy = releasable_energy(law, contacts)
     np.add.at(stored, contacts.body_a, energy)
     np.add.at(stored, contacts.body_b, energy)
     straight, turning = (np.linalg.eigvalsh(each)[:, -1] for each in (dynamics.inverse_mass, dynamics.inverse_inertia))

@@ -67,9 +67,11 @@ def plan(
     length keep the energy; each change costs some. h is the step halved a whole number of times, so that other bodies
     seldom change it. A body that is no ball may hit with its fastest point, wherever its nearest one is now.
 
-    ``contacts`` are all that may come into range in the span; ``quasi_steady``: whether the fluid has no inertia.
-    Friction may then leave contacts no time to swing, and h is a tenth of their relaxation time.
+    ``contacts`` are all that may come into range in the span, of which those of sign -1 only take stiffness away;
+    ``quasi_steady``: whether the fluid has no inertia. Friction may then leave contacts no time to swing, and h is a
+    tenth of their relaxation time.
     """
+    contacts = select(contacts, contacts.sign > 0.0)
     if len(contacts) == 0:
         return Plan(span, span)
     acceleration = _pair_values(dynamics.max_acceleration(span), contacts).sum(axis=1)
