@@ -21,6 +21,7 @@ PICTURES = {
     "dfg_2d2": Shown("vorticity", (3.0, 7.0)),
     "dfg_2d3": Shown("vorticity", (2.0, 4.0, 6.0)),
     "dfg_cylinder": Shown("streamlines", (15.0,), (-0.2, -0.2, 0.6, 0.21)),
+    "dominoes": Shown("paths", (0.3,)),
     "drafting_kissing_tumbling": Shown("vorticity", (0.06, 0.12, 0.18, 0.24)),
     "dry_bounce": Shown("paths", (0.2,)),
     "dumbbell_in_shear": Shown("space", (0.6, 4.8)),

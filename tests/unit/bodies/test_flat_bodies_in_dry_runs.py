@@ -151,9 +151,9 @@ def test_a_turned_cube_rests_on_a_cube(tmp_path: Path) -> None:
 
 @pytest.mark.long
 def test_a_cube_slides_off_a_cube_as_coulomb_says(tmp_path: Path) -> None:
-    """Its edges are parallel to those below and beyond them, and take no part."""
+    """Friction tilts it a little on its soft contacts, and with it their normals."""
     simulation = cube_on_cube(tmp_path, STICKING, [0.5, 0.5, HIGH], [0.0, 0.0, 0.0], end=0.4, pull=0.8)
     stepped(simulation, 0.2)
     before = simulation.state.twist.velocity[1, 0]
     stepped(simulation, 0.4)
-    assert (simulation.state.twist.velocity[1, 0] - before) / 0.2 == pytest.approx(0.8 - 0.5, rel=5e-3)
+    assert (simulation.state.twist.velocity[1, 0] - before) / 0.2 == pytest.approx(0.8 - 0.5, rel=0.01)
