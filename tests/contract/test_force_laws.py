@@ -69,8 +69,11 @@ class TestSpringDashpot(ForceLawContract):
             {"restitution": 0.6, "friction": 0.4},
             {"damping": 30.0, "friction": 0.1, "tangential_damping": 0.5},
             {"damping": 30.0, "friction": 0.1, "tangential_stiffness": 7e3},
+            {"damping": 30.0, "friction": 0.1, "tangential_stiffness": 7e3, "rolling_friction": 0.1},
+            {"damping": 30.0, "friction": 0.1, "tangential_stiffness": 7e3, "rolling_friction": 0.1}
+            | {"twisting_friction": 0.2},
         ],
-        ids=["restitution", "damping", "sticking"],
+        ids=["restitution", "damping", "sticking", "rolling", "twisting"],
     )
     def law(self, request: pytest.FixtureRequest) -> ForceLaw:
         return SpringDashpotLaw(SpringDashpotOptions(stiffness=1e4, **request.param), RANGE)

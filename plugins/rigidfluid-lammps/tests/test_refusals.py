@@ -12,6 +12,10 @@ from rigidfluid_lammps import CrosscheckError, crosscheck
 
 Tables = dict[str, Any]
 NORMAL = {"law": "normal", "range": 0.02, "epsilon": 1e-6}
+ROLLING = {
+    **{"law": "spring-dashpot", "range": 0.02, "stiffness": 1e5, "friction": 0.5},
+    **{"tangential_stiffness": 1e5, "rolling_friction": 0.1},
+}
 FILM = {"law": "lubrication", "range": 0.01, "viscosity": 0.05, "cutoff": 1e-3}
 ONE, OTHER = ball([0.3, 0.5], [0.0, 0.0], name="one"), ball([0.8, 0.8], [0.0, 0.0], name="other")
 UNMOVED, SHAPELESS = ({key: ONE[key] for key in ONE if key != left_out} for left_out in ("velocity", "radius"))
@@ -31,6 +35,7 @@ REFUSED: dict[str, tuple[str, Tables]] = {
     "a wall that slides": ("domain: found the wall 'bottom'", {"boundary": [BELT]}),
     "a film": ("contact.law: found 'lubrication'", {"contact": FILM}),
     "a film, elsewhere": ("interaction.0.law: found 'lubrication'", {"interaction": [FILM]}),
+    "friction of rolling": ("contact.rolling_friction", {"contact": ROLLING}),
     "a damper": ("contact.restitution: found 0.5", {"contact": NORMAL | {"restitution": 0.5}}),
     "a damper, elsewhere": ("interaction.0.restitution", {"interaction": [NORMAL | {"restitution": 0.5}]}),
     "two laws": ("interaction: found 2 interactions", {"interaction": [NORMAL, FILM]}),

@@ -21,6 +21,8 @@ class SpringDashpotOptions(PartOptions):
     set the dissipation of the dashpot; without either there is none. ``friction``: the coefficient μ.
     ``tangential_damping``: the ratio x of the dashpots along and across the surfaces. ``tangential_stiffness``: of a
     spring along the surfaces, k_t [force/length]; without it friction has no memory, and what rests on a slope creeps.
+    ``rolling_friction``, ``twisting_friction``: the coefficients μ_r and μ_o of friction that resists rolling, and the
+    turning about the normal; they need the spring.
     """
 
     stiffness: float = Field(gt=0, description="Stiffness k of the spring [force/length]")
@@ -43,12 +45,21 @@ class SpringDashpotOptions(PartOptions):
         description="Stiffness k_t of a spring along the surfaces, which holds static friction [force/length]",
     )
 
+    rolling_friction: float = Field(
+        default=0.0, ge=0, description="Coefficient of rolling friction μ_r: the largest couple is μ_r R F_n [1]"
+    )
+    twisting_friction: float = Field(
+        default=0.0, ge=0, description="Coefficient of twisting friction μ_o: the largest couple is μ_o R F_n [1]"
+    )
+
     @model_validator(mode="after")
     def _consistent(self) -> Self:
         if self.restitution is not None and self.damping is not None:
             raise ValueError("`restitution` or `damping`, not both")
         if self.tangential_stiffness is not None and self.friction == 0.0:
             raise ValueError("`tangential_stiffness` with `friction` above 0 alone")
+        if self.tangential_stiffness is None and (self.rolling_friction > 0.0 or self.twisting_friction > 0.0):
+            raise ValueError("`rolling_friction` and `twisting_friction` with `tangential_stiffness` alone")
         return self
 
 
@@ -63,6 +74,14 @@ class SpringDashpotLaw(ForceLaw):
     With ``tangential_stiffness`` k_t the force along the surfaces is -(k_t ξ + x γ v_t), at most μ |F_n|: ξ, the
     displacement of the surfaces past each other, is shortened where they slip until that holds (Cundall & Strack,
     Géotechnique 29 (1979) 47, doi:10.1680/geot.1979.29.1.47). Its energy is k_t ξ²/2.
+
+    With ``rolling_friction`` μ_r or ``twisting_friction`` μ_o it is so for the relative angular velocity w too (Luding,
+    Granular Matter 10 (2008) 235, doi:10.1007/s10035-008-0099-x): the couple is
+
+        C = -R (k_t ζ + x γ R w),   |C across n| ≤ μ_r R |F_n|,   |C along n| ≤ μ_o R |F_n|
+
+    with the effective radius R = r_a r_b/(r_a + r_b), r_a at a flat wall, and ζ = ∫ R w dt [length], shortened as ξ is.
+    Its energy is k_t ζ²/2. In 2D bodies roll and do not twist.
 
     Notes
     -----
@@ -83,6 +102,9 @@ class SpringDashpotLaw(ForceLaw):
         super().__init__(options, range, loads)
         self.friction = self.options.friction
         self.sticking = self.options.tangential_stiffness is not None
+        keys = [key for key in ("rolling_friction", "twisting_friction") if getattr(self.options, key) > 0.0]
+        self.rolling = self.couples = bool(keys)
+        self.round_option = keys[0] if keys else ""
 
     def force(self, contacts: Contacts) -> FloatArray:
         """k δ along the normal on ``body_a``, (m, d) [force]."""
@@ -117,6 +139,33 @@ class SpringDashpotLaw(ForceLaw):
         most = self._greatest_friction(contacts, coefficient * speed)
         return held_displacement(self.tangential_stiffness(contacts), damped, most, displacement)
 
+    def couple(self, contacts: Contacts, motion: Motion) -> FloatArray:
+        """-x γ R² w of what friction resists, on ``body_a``, (m, k) [force·length]."""
+        coefficient, _, _ = self._dashpot(contacts, motion)
+        damping = self.options.tangential_damping * coefficient * contacts.effective_radius**2
+        resisted = [turning for _, turning in self._resisted(contacts, motion.angular_velocity)]
+        return np.asarray(-damping[:, None] * sum(resisted, np.zeros_like(motion.angular_velocity)))
+
+    def held_turning(self, contacts: Contacts, motion: Motion, turning: FloatArray) -> FloatArray:
+        """ζ with |k_t ζ + x γ R w| ≤ μ |F_n| along the normal and across it, with its own μ each, (m, k) [length]."""
+        coefficient, speed, _ = self._dashpot(contacts, motion)
+        damping = self.options.tangential_damping * coefficient * contacts.effective_radius
+        stiffness, normal_force = self.tangential_stiffness(contacts), self._normal_force(contacts, coefficient * speed)
+        parts = zip(self._resisted(contacts, turning), self._resisted(contacts, motion.angular_velocity), strict=True)
+        held = [
+            held_displacement(stiffness, damping[:, None] * spin, mu * normal_force, part)
+            for (mu, part), (_, spin) in parts
+        ]
+        return np.asarray(sum(held, np.zeros_like(turning)))
+
+    def _resisted(self, contacts: Contacts, turning: FloatArray) -> list[tuple[float, FloatArray]]:
+        """Parts of ``turning`` (m, k) that friction resists, each with its coefficient: across and along the normal."""
+        twisting = np.zeros_like(turning)
+        if turning.shape[1] == 3:
+            twisting = np.sum(turning * contacts.normal, axis=1)[:, None] * contacts.normal
+        parts = (self.options.rolling_friction, turning - twisting), (self.options.twisting_friction, twisting)
+        return [(coefficient, part) for coefficient, part in parts if coefficient > 0.0]
+
     def _dashpot(self, contacts: Contacts, motion: Motion) -> tuple[FloatArray, FloatArray, FloatArray]:
         """γ (m,) [force·time/length], and the relative velocity along the normal (m,) and across it (m, d)."""
         coefficient = np.where(self._overlap(contacts) > 0.0, self._coefficient(motion.mass), 0.0)
@@ -125,7 +174,11 @@ class SpringDashpotLaw(ForceLaw):
 
     def _greatest_friction(self, contacts: Contacts, damped: FloatArray) -> FloatArray:
         """μ |F_n| with the force ``damped`` (m,) of the dashpot, (m,) [force]."""
-        return self.options.friction * np.abs(self.options.stiffness * self._overlap(contacts) - damped)
+        return self.options.friction * self._normal_force(contacts, damped)
+
+    def _normal_force(self, contacts: Contacts, damped: FloatArray) -> FloatArray:
+        """|F_n| with the force ``damped`` (m,) of the dashpot, (m,) [force]."""
+        return np.abs(self.options.stiffness * self._overlap(contacts) - damped)
 
     def _overlap(self, contacts: Contacts) -> FloatArray:
         return np.maximum(self.range - contacts.gap, 0.0)

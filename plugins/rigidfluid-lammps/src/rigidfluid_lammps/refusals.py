@@ -62,6 +62,11 @@ def _refuse_walls(system: System) -> None:
 
 def _refuse_law(scene: Scene, system: System) -> None:
     law = system.law
+    if isinstance(law, SpringDashpotLaw) and law.rolling:
+        allowed = "friction of sliding alone: LAMMPS' couples act at the radii of the enlarged balls"
+        raise CrosscheckError(
+            f"contact.{law.round_option}", "friction of rolling or twisting", allowed, "Leave it out."
+        )
     if law is None or isinstance(law, SpringDashpotLaw):
         return
     if all(law is not interaction.law for interaction in system.interactions):

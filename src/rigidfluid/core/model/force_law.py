@@ -51,6 +51,8 @@ class ForceLaw(Part):
     sticking: bool = False
     """Tell whether it has springs along the surfaces, which remember how far these have moved past each other; else
     their stiffness is zero."""
+    rolling: bool = False
+    """Tell whether these springs resist rolling and twisting too, by couples."""
     couples: bool = False
     """Tell whether its dampers turn bodies by couples besides their force; else these are zero."""
     sign: Sign = "repels"
@@ -125,3 +127,9 @@ class ForceLaw(Part):
         """Displacement ξ that friction holds of a ``displacement`` of these springs, (m, d) each and across the normals
         [length]: -k ξ and damping along the surfaces together are no more than friction gives."""
         return np.zeros_like(displacement)
+
+    @gives(rows(lambda _, contacts, motion, turning: turning.shape, shorter=True))
+    def held_turning(self, contacts: Contacts, motion: Motion, turning: FloatArray) -> FloatArray:
+        """Displacement ζ that friction of rolling and twisting holds of ``turning``, (m, k) each, the relative angle
+        times the effective radius R [length]; the couple of the springs is -R k ζ on ``body_a``."""
+        return np.zeros_like(turning)

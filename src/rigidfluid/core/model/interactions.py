@@ -79,6 +79,7 @@ class SumOfLaws(ForceLaw):
         self.overlap = _overlap_of(with_energy)
         self.vanishes_at_range = all(law.vanishes_at_range for law in with_energy)
         self.sticking = any(law.sticking for law in laws)
+        self.rolling = any(law.rolling for law in laws)
         self.couples = any(law.couples for law in laws)
         self._shared: tuple[Contacts | None, list[_Share]] = None, []
 
@@ -126,6 +127,14 @@ class SumOfLaws(ForceLaw):
             return law.held_displacement(some, motion.select(chosen), displacement[chosen])
 
         return self._sum(contacts, np.zeros_like(displacement), held)
+
+    def held_turning(self, contacts: Contacts, motion: Motion, turning: FloatArray) -> FloatArray:
+        """Displacement of these springs by rolling and twisting that friction holds, (m, k) [length]."""
+
+        def held(law: ForceLaw, some: Contacts, chosen: BoolArray) -> FloatArray:
+            return law.held_turning(some, motion.select(chosen), turning[chosen])
+
+        return self._sum(contacts, np.zeros_like(turning), held)
 
     def _sum(
         self, contacts: Contacts, total: FloatArray, asked: Callable[[ForceLaw, Contacts, BoolArray], FloatArray]

@@ -50,6 +50,7 @@ _STATE: Shapes = {
     "springs": {
         **dict.fromkeys(("body_a", "body_b", "stiffness"), "l"),
         **dict.fromkeys(("arm_a", "arm_b", "normal", "displacement"), "ld"),
+        "turning": "lk",
     },
     **{"hydrodynamic_wrench": _wrench("n"), "contact_wrench": _wrench("n"), "applied": _wrench("n")},
     "motions": {

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rigidfluid.core.contact.pairs.carried_springs import carried_displacement, springs_at, transported
+from rigidfluid.core.contact.pairs.carried_springs import carried_displacement, carried_springs, springs_at, transported
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.types import Contacts, Pose
@@ -74,3 +74,21 @@ def test_relaxed_springs_and_contacts_without_any_are_forgotten():
     displacement = np.array([[0.1, 0.0], [0.0, 0.0], [0.2, 0.0]])
     springs = springs_at(corners(points), displacement, np.array([5.0, 5.0, 0.0]), POSE)
     np.testing.assert_allclose(springs.displacement, displacement[:1])
+
+
+def test_turning_goes_with_the_normal_and_its_twist_stays_along_it():
+    random = np.random.default_rng(2)
+    normals, turning = unit(random.normal(size=(2, 3))), random.normal(size=(1, 3))
+    point, which, unknown = np.zeros((1, 3)), np.zeros(1, dtype=np.int64), np.full(1, np.nan)
+    pose = Pose(np.zeros((1, 3)), np.array([[1.0, 0.0, 0.0, 0.0]]))
+
+    def contact(normal):
+        return Contacts(which, which + 1, point, point, normal[None], unknown, unknown, unknown, which > -1, unknown)
+
+    springs = springs_at(contact(normals[0]), np.zeros((1, 3)), np.ones(1), pose, turning)
+    assert springs.energy == pytest.approx([0.5 * np.sum(turning**2)])
+    displacement, there = carried_springs(springs, contact(normals[1]), pose)
+    assert not displacement.any()
+    assert there[0] @ normals[1] == pytest.approx(turning[0] @ normals[0])
+    assert np.linalg.norm(there) == pytest.approx(np.linalg.norm(turning))
+    assert not np.allclose(there, turning)

@@ -22,18 +22,30 @@ _MOST_AT_ONCE = 10_000
 
 def carried_displacement(springs: TangentialSprings | None, contacts: Contacts, pose: Pose) -> FloatArray:
     """Displacements of ``springs`` in the ``contacts`` of bodies at ``pose``, (m, d), zero where none is [length]."""
+    return carried_springs(springs, contacts, pose)[0]
+
+
+def carried_springs(springs: TangentialSprings | None, contacts: Contacts, pose: Pose) -> tuple[FloatArray, FloatArray]:
+    """Displacements (m, d) and turning (m, k) of ``springs`` in the ``contacts`` of bodies at ``pose``, zero where none
+    is [length]."""
     carried = np.zeros_like(contacts.normal)
+    turning = np.zeros((len(contacts), 1 if carried.shape[1] == 2 else 3))
     if springs is not None and len(contacts):
         mine, theirs = _matched(springs, contacts, pose)
-        kept = springs.select(mine)
-        carried[theirs] = transported(kept.displacement, kept.normal, contacts.normal[theirs])
-    return carried
+        kept, normal = springs.select(mine), contacts.normal[theirs]
+        carried[theirs] = transported(kept.displacement, kept.normal, normal)
+        turning[theirs] = _turned(kept.turning, kept.normal, normal)
+    return carried, turning
 
 
-def springs_at(contacts: Contacts, displacement: FloatArray, stiffness: FloatArray, pose: Pose) -> TangentialSprings:
-    """Springs of this ``displacement`` (m, d) [length] and ``stiffness`` (m,) [force/length] in the ``contacts`` of
-    bodies at ``pose``, without those that are not there or relaxed."""
-    chosen = np.flatnonzero((stiffness != 0.0) & displacement.any(axis=1))
+def springs_at(
+    contacts: Contacts, displacement: FloatArray, stiffness: FloatArray, pose: Pose, turning: FloatArray | None = None
+) -> TangentialSprings:
+    """Springs of this ``displacement`` (m, d) and ``turning`` (m, k), None for none, [length] and ``stiffness`` (m,)
+    [force/length] in the ``contacts`` of bodies at ``pose``, without those that are not there or relaxed."""
+    if turning is None:
+        turning = np.zeros((len(contacts), 1 if displacement.shape[1] == 2 else 3))
+    chosen = np.flatnonzero((stiffness != 0.0) & (displacement.any(axis=1) | turning.any(axis=1)))
     near, turned_back = select(contacts, chosen), np.swapaxes(rotation_matrices(pose.orientation), -1, -2)
     return TangentialSprings(
         near.body_a,
@@ -43,6 +55,7 @@ def springs_at(contacts: Contacts, displacement: FloatArray, stiffness: FloatArr
         near.normal,
         displacement[chosen],
         stiffness[chosen],
+        turning[chosen],
     )
 
 
@@ -57,6 +70,14 @@ def transported(displacement: FloatArray, before: FloatArray, after: FloatArray)
     part = np.divide(along, closeness, out=np.zeros_like(along), where=closeness > _OPPOSITE)
     turned = displacement - part[:, None] * (before + after)
     return np.asarray(turned - np.sum(turned * after, axis=1)[:, None] * after)
+
+
+def _turned(turning: FloatArray, before: FloatArray, after: FloatArray) -> FloatArray:
+    """Vectors ``turning`` (s, k) transported as displacements are, and their part along the normal with this."""
+    if turning.shape[1] == 1:
+        return turning
+    twisting = np.sum(turning * before, axis=1)[:, None]
+    return np.asarray(transported(turning - twisting * before, before, after) + twisting * after)
 
 
 def _matched(springs: TangentialSprings, contacts: Contacts, pose: Pose) -> tuple[IntArray, IntArray]:

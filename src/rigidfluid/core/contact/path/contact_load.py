@@ -68,8 +68,10 @@ def contact_load(
         damping = evaluate_damping(law, contacts, motion)
         force, couple, loss = force + damping.force, damping.couple, damping.loss(motion)
         if law.sticking:
-            along, springs, slipped = stretched(law, contacts, motion, dynamics.pose, springs, time)
+            along, turning, springs, slipped = stretched(law, contacts, motion, dynamics.pose, springs, time)
             force = force + along
+            if turning is not None:
+                couple = turning if couple is None else couple + turning
     wrench, actuator_work = contact_wrench(contacts, force, dynamics.pose, couple), 0.0
     moved = prescribed_bodies(system)
     if moved.any():

@@ -194,7 +194,10 @@ def _tangential_sum(law: ForceLaw, contacts: Contacts, dynamics: BodyDynamics, i
     """Bound of Σ k/m of springs along the surfaces of all contacts of either body, which turn the bodies too
     [1/time²]."""
     touching = replace(contacts, gap=np.minimum(contacts.gap, JUST_IN * law.range))
-    turning = _square_arms(contacts, dynamics) * _lightest(contacts, dynamics)
+    square = _square_arms(contacts, dynamics)
+    if law.rolling:
+        square += np.where(np.isnan(contacts.effective_radius), 0.0, contacts.effective_radius**2)[:, None]
+    turning = square * _lightest(contacts, dynamics)
     return _highest_sum(law.tangential_stiffness(touching), contacts, inverse + turning)
 
 
@@ -206,7 +209,7 @@ def _turning_rate(
     Their power S v² + 2 Q v w + W w², which is never negative, is at most 2 (S v² + W w²).
     """
     deepest = _deepest(law, contacts, approach.energy + law.energy(contacts), force)
-    axes, mass = np.eye(contacts.normal.shape[1]), np.ones(len(contacts))
+    axes, mass = np.eye(contacts.normal.shape[1]), relative_motion(contacts, dynamics).mass
     sliding, rolling = np.zeros((2, len(contacts)))
     for there in contacts_on_the_way(law, contacts, deepest):
         for speed in _SPEEDS:
