@@ -4,7 +4,7 @@ from scipy.integrate import solve_ivp
 from touching import NORMAL, contact
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.model.types import Motion
+from rigidfluid.core.model.types import Contacts, Motion
 from rigidfluid.errors import ArgumentError
 from rigidfluid.forces.spring_dashpot import SpringDashpotLaw, SpringDashpotOptions
 
@@ -78,9 +78,32 @@ def test_springs_along_the_surfaces_are_shortened_onto_the_cone() -> None:
     assert not sticking.held_displacement(contact(RANGE), motion, 0.01 * ALONG).any()
 
 
+def test_springs_that_resist_turning_are_shortened_across_and_along_the_normal_by_their_own_coefficients() -> None:
+    keys = {"friction": 0.3, "tangential_damping": 0.5, "tangential_stiffness": 2e3}
+    rolling = law(damping=7.0, rolling_friction=0.2, twisting_friction=0.1, **keys)
+    normal, across = np.array([[0.0, 0.0, 1.0]]), np.array([[0.6, 0.8, 0.0]])
+    one, half = np.ones(1), np.full(1, 0.5)
+    body, point = np.zeros(1, dtype=np.int64), np.zeros((1, 3))
+    touching = Contacts(body, body + 1, point, point, normal, np.full(1, GAP), one, one, body > 0)
+    np.testing.assert_allclose(touching.effective_radius, half)
+    motion = Motion(0.0 * normal, one, 2.0 * across - 4.0 * normal)
+    damping, pressing = 0.5 * 7.0 * half, STIFFNESS * (RANGE - GAP)
+    np.testing.assert_allclose(rolling.couple(touching, motion), -damping * 0.5 * motion.angular_velocity)
+    small = 1e-4 * (across + normal)
+    np.testing.assert_allclose(rolling.held_turning(touching, motion, small), small)
+    held = rolling.held_turning(touching, motion, across - normal)
+    expected = pressing * (0.2 * across - 0.1 * normal) - damping * motion.angular_velocity
+    np.testing.assert_allclose(2e3 * held, expected)
+    free_to_twist = law(damping=7.0, rolling_friction=0.2, **keys)
+    assert not free_to_twist.held_turning(touching, motion, normal)[0, 2]
+    assert not free_to_twist.couple(touching, motion)[0, 2]
+
+
 @pytest.mark.parametrize(
     "keys",
     [
+        {"rolling_friction": 0.1},
+        {"twisting_friction": 0.1, "friction": 0.5},
         {"restitution": 0.0},
         {"restitution": 1.1},
         {"damping": -1.0},
