@@ -12,7 +12,6 @@ import numpy as np
 from rigidfluid.checks.design_contacts import DesignContacts, design_contacts
 from rigidfluid.checks.film import resolved_gap
 from rigidfluid.checks.rebound import given_back
-from rigidfluid.core.contact.laws.added_law import added, bare
 from rigidfluid.core.contact.laws.film_loss import FilmLoss
 from rigidfluid.core.contact.laws.restitution import Restitution
 from rigidfluid.core.contact.laws.rough_film import RoughFilm
@@ -21,6 +20,7 @@ from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts
+from rigidfluid.core.model.wrapped_law import bare, layer
 from rigidfluid.core.scene.mesh_tables import MeshTable
 
 
@@ -97,12 +97,12 @@ def _dry_restitution(laws: list[ForceLaw]) -> float | None:
 
 def _losses(laws: list[ForceLaw]) -> list[FilmLoss | RoughFilm]:
     """Losses of impacts in the film that laws know of."""
-    restitutions = [added(Restitution, law) for law in laws]
+    restitutions = [layer(Restitution, law) for law in laws]
     return [each.loss for each in restitutions if each is not None and each.loss is not None]
 
 
 def _own_restitution(law: ForceLaw) -> float | None:
-    if restitution := added(Restitution, law):
+    if restitution := layer(Restitution, law):
         return restitution.restitution
     law = bare(law)
     if law.dissipative:

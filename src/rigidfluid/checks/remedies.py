@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 from rigidfluid.checks.design_contacts import DesignContacts
 from rigidfluid.checks.finding import round_down, round_up
-from rigidfluid.core.contact.laws.added_law import bare
 from rigidfluid.core.contact.laws.repulsion import AUTO, Repulsion
+from rigidfluid.core.model.wrapped_law import bare
 
 
 def strength_remedy(design: DesignContacts, share: float) -> tuple[Mapping[str, float], str]:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rigidfluid.core.contact.laws.added_law import added, bare
 from rigidfluid.core.contact.laws.friction import Friction
 from rigidfluid.core.contact.laws.restitution import Restitution
+from rigidfluid.core.model.wrapped_law import bare, layer
 
 if TYPE_CHECKING:
     from rigidfluid.core.fluid.fluid_problem import FluidProblem
@@ -107,10 +107,10 @@ def _joints(system: System) -> Feature:
 def _law(system: System, interaction: Interaction) -> str:
     law = interaction.law
     text = f"law {bare(law).name!r} below a gap of {law.range}"
-    if restitution := added(Restitution, law):
+    if restitution := layer(Restitution, law):
         text += f" with a restitution of {restitution.restitution:g}"
         text += "" if restitution.loss is None else restitution.loss.words
-    if friction := added(Friction, law):
+    if friction := layer(Friction, law):
         text += f" and a friction of {friction.friction:g}"
     if interaction.between != "all":
         text += {"walls": " at walls", "pairs": " between bodies"}[interaction.between]

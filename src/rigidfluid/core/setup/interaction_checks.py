@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from rigidfluid.core.contact.laws.added_law import added
 from rigidfluid.core.contact.laws.restitution import Restitution
 from rigidfluid.core.contact.laws.rough_film import RoughFilm
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.interactions import Interaction
+from rigidfluid.core.model.wrapped_law import layer
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
@@ -25,6 +25,7 @@ def check_interactions(
     """Refuse, with SceneError, laws that would hold the same displacement along surfaces, or count a film twice, and
     those with an option that the shapes of their ``bodies`` or ``walls`` do not allow."""
     _check_sticking(interactions)
+    _check_rolling(interactions, stepping)
     _check_films(interactions)
     for interaction in interactions:
         if interaction.law.round_option:
@@ -54,6 +55,14 @@ def _check_sticking(interactions: Sequence[Interaction]) -> None:
             raise SceneError(f"{other.field}.law", found, allowed, remedy)
 
 
+def _check_rolling(interactions: Sequence[Interaction], stepping: ContactStepping) -> None:
+    """Refuse springs that resist turning in implicit steps, which take couples from the iteration before."""
+    if stepping.implicit and any(interaction.law.rolling for interaction in interactions):
+        found, allowed = "'implicit' with springs that resist rolling or twisting", "'substeps'"
+        remedy = "Leave it out, or remove `rolling_friction` and `twisting_friction`."
+        raise SceneError("contact.stepping", found, allowed, remedy)
+
+
 def _check_films(interactions: Sequence[Interaction]) -> None:
     """Refuse the law of a film where surfaces have a roughness, down to which their own law counts the film."""
     rough = [each for each in interactions if _is_rough(each.law)]
@@ -66,7 +75,7 @@ def _check_films(interactions: Sequence[Interaction]) -> None:
 
 
 def _is_rough(law: ForceLaw) -> bool:
-    restitution = added(Restitution, law)
+    restitution = layer(Restitution, law)
     return restitution is not None and isinstance(restitution.loss, RoughFilm)
 
 

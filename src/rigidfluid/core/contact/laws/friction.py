@@ -7,12 +7,12 @@ from typing import ClassVar
 
 import numpy as np
 
-from rigidfluid.core.contact.laws.added_law import AddedLaw, added
 from rigidfluid.core.contact.laws.restitution import Restitution
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.coulomb import dashpot_coefficient, held_displacement, sliding_friction
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.types import Contacts, Motion
+from rigidfluid.core.model.wrapped_law import WrappedLaw, layer
 from rigidfluid.errors import SceneError
 
 STIFFNESS_RATIO = 2.0 / 7.0
@@ -32,7 +32,7 @@ class Rubbing:
     gap: float
 
 
-class Friction(AddedLaw):
+class Friction(WrappedLaw):
     """Law F = F_n n - k_t ξ - min(x γ |v_t|, μ |F_n|) v_t/|v_t|, the force along the surfaces at most μ |F_n|.
 
     F_n is the normal force of a ``law``, its dampers included. ξ is the displacement of the surfaces past each other
@@ -46,27 +46,22 @@ class Friction(AddedLaw):
     """
 
     name: ClassVar[str] = "friction"
-    sticking: bool = True
 
     def __init__(self, law: ForceLaw, rubbing: Rubbing) -> None:
         super().__init__(law)
         if not law.keeps_apart or law.sign == "attracts":
             remedy = "Leave `friction` out, and give it to the law that repels."
             raise SceneError("contact.law", f"a friction for {law.name!r}", "a law that repels", remedy)
+        self.dissipative = self.sticking = True
         self.friction = rubbing.friction
-        self.couples = law.couples
         self._rubbing = rubbing
-        restitution = added(Restitution, law)
+        restitution = layer(Restitution, law)
         self._restitution = 1.0 if restitution is None else restitution.restitution
 
     def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
         """Damping of the law, and the dashpots along the surfaces on ``body_a``, (m, d) [force]."""
         damping = self.law.damping(contacts, motion)
         return damping - self._dashpots(contacts, motion, self._most(contacts, damping))
-
-    def couple(self, contacts: Contacts, motion: Motion) -> FloatArray:
-        """Couples of the law on ``body_a``, (m, k) [force·length]."""
-        return self.law.couple(contacts, motion)
 
     def tangential_stiffness(self, contacts: Contacts) -> FloatArray:
         """k_t within range, (m,) [force/length]."""

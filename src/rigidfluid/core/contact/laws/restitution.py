@@ -6,7 +6,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from rigidfluid.core.contact.laws.added_law import AddedLaw
 from rigidfluid.core.contact.laws.film_loss import FilmLoss
 from rigidfluid.core.contact.laws.hunt_crossley import LEAST, Hardening, excess, excess_by_speed, hardening
 from rigidfluid.core.contact.laws.rough_film import RoughFilm
@@ -14,10 +13,11 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.types import Contacts, Motion
+from rigidfluid.core.model.wrapped_law import WrappedLaw
 from rigidfluid.errors import SceneError
 
 
-class Restitution(AddedLaw):
+class Restitution(WrappedLaw):
     """Law F = f (1 + x ẇ/v), f the force of a ``law`` with the energy U, ẇ the closing speed, v that at range.
 
     x follows from the ``restitution`` e, from LEAST to 1, by x (1 + e) = ln[(1 + x)/(1 - e x)]: a head-on impact of two
@@ -53,6 +53,7 @@ class Restitution(AddedLaw):
             raise SceneError("contact.law", f"a restitution for {law.name!r}", "a law that repels", remedy)
         if restitution < LEAST:
             raise SceneError("contact.restitution", restitution, f"from {LEAST} to 1", f"Set it to {LEAST} or more.")
+        self.dissipative = True
         self.restitution = restitution
         self.loss = loss
 

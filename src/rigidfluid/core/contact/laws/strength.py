@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from rigidfluid.core.contact.laws.added_law import bare
 from rigidfluid.core.contact.laws.loads import closing_speed, impact_energy, stacked_weight
 from rigidfluid.core.contact.laws.repulsion import AUTO, Repulsion
 from rigidfluid.core.contact.laws.work_to_stop import share_left
@@ -16,6 +15,7 @@ from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, Loads
+from rigidfluid.core.model.wrapped_law import bare
 
 
 def chosen_strengths(system: System) -> list[dict[str, Any]]:
