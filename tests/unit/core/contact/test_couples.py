@@ -85,13 +85,3 @@ def test_the_path_converges_with_second_order() -> None:
     found = [turned(0.008 / 2**k) for k in range(4)]
     ratios = np.diff(found)[:-1] / np.diff(found)[1:]
     assert np.all(ratios > 3.2)
-
-
-def test_substeps_resolve_what_turns_alone() -> None:
-    """A disk that is held in its place has no mass along the normal; its spin would change its sign in each substep."""
-    disk = ball([0.5, RADIUS + GAP], [0.0, 0.0], angular_velocity=3.0, free=["rotation"])
-    film = FILM | {"viscosity": 2.0}
-    history = rigidfluid.run(dry_scene(film, disk, end=1e-3, step=5e-4))
-    turned = spin(history, 2)[:, 0]
-    assert np.all(turned >= 0.0)
-    assert turned[-1] < 0.05

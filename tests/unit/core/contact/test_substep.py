@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import ceil, log2
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -12,7 +13,8 @@ from rigidfluid.core.contact.path.substep import RESOLUTION, Reach, plan, relati
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.dynamics import DryDynamics
 from rigidfluid.core.model.force_law import ForceLaw
-from rigidfluid.core.model.types import Contacts, Pose, Twist
+from rigidfluid.core.model.part import PartOptions
+from rigidfluid.core.model.types import Contacts, Motion, Pose, Twist
 from rigidfluid.forces.normal import NormalLaw
 from rigidfluid.forces.spring_dashpot import SpringDashpotLaw
 
@@ -63,6 +65,41 @@ def test_a_spring_is_resolved_on_both_bodies() -> None:
 
 def test_a_damper_that_is_faster_than_the_spring_is_resolved() -> None:
     assert_resolved(spring(7.0, damping=40.0), 0.05, balls(0.05, CLOSING), 40.0 * INVERSE)
+
+
+class Brake(ForceLaw):
+    """F = -s v and the couple -c w, in range."""
+
+    name: ClassVar[str] = "brake"
+    conservative: bool = False
+    dissipative: bool = True
+    couples: bool = True
+
+    def __init__(self, sliding: float, turning: float) -> None:
+        super().__init__(PartOptions(), RANGE)
+        self.coefficients = sliding, turning
+
+    def force(self, contacts: Contacts) -> FloatArray:
+        return np.zeros_like(contacts.normal)
+
+    def energy(self, contacts: Contacts) -> FloatArray:
+        return np.zeros_like(contacts.gap)
+
+    def stiffness(self, contacts: Contacts) -> FloatArray:
+        return np.zeros_like(contacts.gap)
+
+    def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
+        return np.where(contacts.gap < RANGE, -self.coefficients[0], 0.0)[:, None] * motion.velocity
+
+    def couple(self, contacts: Contacts, motion: Motion) -> FloatArray:
+        return np.where(contacts.gap < RANGE, -self.coefficients[1], 0.0)[:, None] * motion.angular_velocity
+
+
+def test_what_brakes_the_spin_is_resolved() -> None:
+    """Twice c (1/I_a + 1/I_b), and s (1/m + l²/I) of both besides, l the distance of the contact from the centre."""
+    assert_resolved(Brake(0.0, 30.0), 0.05, balls(0.05, CLOSING), 2.0 * 30.0 * 2.0)
+    sliding = 9.0 * (INVERSE + 0.525**2 + 0.525**2)
+    assert_resolved(Brake(9.0, 30.0), 0.05, balls(0.05, CLOSING), 2.0 * (sliding + 30.0 * 2.0))
 
 
 def rate_at(depth: float, epsilon: float) -> float:
