@@ -40,7 +40,8 @@ class ForceLaw(Part):
     range: float
     balls_only: ClassVar[bool] = False
     round_option: str = ""
-    """Key of its table by which it is for round and flat surfaces alone; false, it is for any. Empty without such."""
+    """Key of its table by which it is for round and flat surfaces alone; false or 0, it is for any. Empty without
+    such."""
     film: bool = False
     """Tell whether it resists as a film that no mesh resolves: it reads `Contacts.effective_radius`, which balls,
     ellipses and ellipsoids have."""

@@ -39,9 +39,11 @@ def _check_round(interaction: Interaction, bodies: Sequence[Body], walls: Sequen
         radius |= {wall.surface: wall.shape.radius for wall in walls}
     met = interaction.surfaces if len(interaction.surfaces) == 2 else tuple(radius)
     if any(radius.get(surface) is None for surface in met):
-        field = f"{interaction.field}.{interaction.law.round_option}"
-        found = f"true for {interaction.law.name!r} with surfaces that are neither round nor flat"
-        remedy = "Set it to false, or keep the law to other contacts by `between` or `names`."
+        option = interaction.law.round_option
+        value, field = getattr(interaction.law.options, option), f"{interaction.field}.{option}"
+        given, off = ("true", "false") if value is True else (value, "0")
+        found = f"{given} for {interaction.law.name!r} with surfaces that are neither round nor flat"
+        remedy = f"Set it to {off}, or keep the law to other contacts by `between` or `names`."
         raise SceneError(field, found, "balls, and flat or round walls", remedy)
 
 

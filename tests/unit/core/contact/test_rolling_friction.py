@@ -123,5 +123,5 @@ def test_keys_that_do_not_fit_are_refused(keys, field):
 
 def test_it_is_for_round_surfaces():
     block = {"type": "ellipsoid", "semi_axes": [0.1, 0.05], "density": 1.0, "position": [0.5, 0.5]}
-    with pytest.raises(SceneError, match="rolling_friction"):
+    with pytest.raises(SceneError, match=r"rolling_friction: found 0\.1 for .*Set it to 0, or"):
         build_system(dry_scene(ROLLING, block, end=0.1, step=1e-3))
