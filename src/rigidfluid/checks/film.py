@@ -55,6 +55,6 @@ def _finding(system: System, interaction: Interaction, contacts: Contacts, mesh:
 
 
 def _counts_sliding(interaction: Interaction, names: tuple[str, str]) -> Finding:
-    text = f"{' and '.join(names)}: the mesh resolves sliding and rolling in all gaps that its cells fit into, and"
+    text = f"{' and '.join(names)}: a mesh resolves sliding and rolling in narrower gaps than squeezing, and"
     text += f" {interaction.law.name!r} counts them again"
     return Finding("warning", QUESTION, names, text, f"Set {interaction.field}.sliding to false.")
