@@ -62,7 +62,9 @@ class FacetDetector(Detector):
         shapes = {shape_key(body): Solid(FacetSurface(body.facets)) for body in bodies if body.facets is not None}
         self._solids = [shapes.get(shape_key(body)) for body in bodies]
         self._solids += [Solid(wall.shape) if isinstance(wall.shape, FacetSurface) else None for wall in walls]
-        self.signed = sum(solid is not None for solid in self._solids) > 1 and bodies[0].dimension == 3
+        self.signed = sum(solid is not None for solid in self._solids) > 1 and any(
+            body.dimension == 3 for body in bodies
+        )
         self._faceted = np.array([solid is not None for solid in self._solids], dtype=bool)
         smooth = [index for index, body in enumerate(bodies) if body.semi_axes is not None]
         self._smooth = np.array(smooth, dtype=np.int64)
