@@ -209,12 +209,13 @@ number to another.
 
 {figures}
 
-The formulas are fits to measured rebounds of spheres, here times the dry .97: exp(-35/St) by Legendre, Daniel and
-Guiraud, Phys. Fluids 17 (2005) 097105, doi:10.1063/1.2010527, and 1 - 8.65 St^-.75, often given for the
-measurements of Joseph, Zenit, Hunt and Rosenwinkel, J. Fluid Mech. 433 (2001) 329, doi:10.1017/S0022112001003470. The
-measured point is the rebound of Gondret, Lance and Petit, Phys. Fluids 14 (2002) 643, doi:10.1063/1.1427920: {measured},
-the speed by which the sphere leaves the wall over that of its fall. It was found by a parabola through the first four points of the measured
-height. It lies above both fits, which are means of measurements that scatter.
+The formulas are fits to measured rebounds of spheres, here times the dry .97: exp(-35/St) by Legendre, Daniel
+and Guiraud, Phys. Fluids 17 (2005) 097105, doi:10.1063/1.2010527, and 1 - 8.65 St^-.75, often given for the
+measurements of Joseph, Zenit, Hunt and Rosenwinkel, J. Fluid Mech. 433 (2001) 329,
+doi:10.1017/S0022112001003470. The measured point is the rebound of Gondret, Lance and Petit, Phys. Fluids 14
+(2002) 643, doi:10.1063/1.1427920: {measured}, the speed by which the sphere leaves the wall over that of its
+fall. It was found by a parabola through the first four points of the measured height. It lies above both fits,
+which are means of measurements that scatter.
 
 * Spheres with `roughness` differ from .97 exp(-35/St) by {above}. The roughness is a property of two surfaces; 2 µm
   is that which gives the height of the measured rebound. None of the others was compared with its own measurement.
