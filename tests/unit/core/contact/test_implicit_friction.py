@@ -1,14 +1,20 @@
 """Implicit steps with springs along surfaces: what rests, what slides, and what springs give back."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from dry_scenes import ball, dry_scene
 from slopes import FRICTION, GRAVITY, RADIUS, RANGE, STICKING, block_on_slope, sliding_ball
 
 from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.contact.path.implicit_friction import Slip, rubbing, with_mean_gaps
+from rigidfluid.core.model.signed_law import SignedLaw
+from rigidfluid.core.model.types import Contacts, Motion
 from rigidfluid.core.output.checkpoint import read_checkpoint
 from rigidfluid.core.run.run import run
 from rigidfluid.core.run.simulation import Simulation
+from rigidfluid.forces.spring_dashpot import SpringDashpotLaw, SpringDashpotOptions
 
 IMPLICIT = STICKING | {"stepping": "implicit"}
 
@@ -123,6 +129,37 @@ def test_no_step_of_a_heap_with_stiff_springs_fails():
     assert state.count == 70
     assert len(state.springs) >= 4
     assert_keeps_its_account(state)
+
+
+def test_walls_without_springs_keep_their_friction_beside_pairs_with_springs():
+    """The second disk is far away."""
+    disk, other = ball([0.5, RADIUS + RANGE - 8e-4], [1.0, 0.0]), ball([2.5, 0.5], [0.0, 0.0])
+    walls = {key: STICKING[key] for key in STICKING if key != "tangential_stiffness"} | {"stiffness": 400.0}
+    data = dry_scene({}, disk, other, end=0.06, step=2e-3, gravity=[0.0, -GRAVITY], upper=[3.0, 1.0]).to_dict()
+    data["contact"], laws = {"stepping": "implicit"}, [walls | {"between": "walls"}, STICKING | {"between": "pairs"}]
+    alone, beside = (ended(scene_from_dict(data | {"interaction": laws[:count]})) for count in (1, 2))
+    assert alone.twist.velocity[0, 0] < 0.75
+    np.testing.assert_allclose(beside.twist.velocity, alone.twist.velocity, atol=1e-6)
+    assert_keeps_its_account(beside)
+
+
+@pytest.mark.parametrize("held", [1e-3, 5e-2], ids=["sticks", "slips"])
+def test_a_contact_of_sign_minus_one_takes_away_what_another_gives(held):
+    options = SpringDashpotOptions(stiffness=3.0, restitution=0.5, friction=0.4, tangential_stiffness=2.0)
+    law = SignedLaw(SpringDashpotLaw(options, 0.2))
+    point, normal = np.array([[0.3, 0.1]] * 2), np.array([[0.0, 1.0]] * 2)
+    numbers, gap, flat, sign = np.array([0, 0]), np.full(2, 0.15), np.full(2, np.inf), np.array([1.0, -1.0])
+    start = Contacts(numbers, numbers + 1, point + gap[:, None] * normal, point, normal, gap, flat, flat, numbers > 0)
+    start = replace(start, sign=sign)
+    middle = with_mean_gaps(law, start, start, np.full(2, 0.11), 0.2 * sign)
+    np.testing.assert_allclose(middle.gap, 0.2 - 0.2 / 3.0)
+    slip = Slip(Motion(np.array([[0.2, -0.1]] * 2), np.ones(2)), 0.1, np.zeros((2, 2)), False)
+    found = rubbing(law, middle, start, np.array([[held, 0.0]] * 2), slip)
+    assert np.any(found.force[0] != 0.0)
+    np.testing.assert_array_equal(found.force[1], -found.force[0])
+    np.testing.assert_array_equal(found.stiffness[1], -found.stiffness[0])
+    np.testing.assert_array_equal(found.rise[1], found.rise[0])
+    np.testing.assert_array_equal(found.displacement[1], found.displacement[0])
 
 
 def test_a_belt_takes_a_disk_along():

@@ -65,7 +65,7 @@ class Slip(NamedTuple):
 
 def rubbing(law: ForceLaw, middle: Contacts, end: Contacts, held: FloatArray, slip: Slip) -> Rubbing:
     """Mean force along the surfaces in a step, where springs have the displacement ``held`` ξ₀ (m, d) at its start, and
-    ``middle`` has the gaps at which the law gives the mean normal forces.
+    ``middle`` has the gaps at which the law gives the mean normal forces; that of dampers where there is no spring.
 
     Spring and dashpot, side by side, are in a row with the slip s: for the way w = Δξ + s
 
@@ -79,7 +79,7 @@ def rubbing(law: ForceLaw, middle: Contacts, end: Contacts, held: FloatArray, sl
     straight = Motion(motion.velocity - across(motion.velocity, middle), motion.mass)
     before = law.held_displacement(middle, straight, held)
     way, damped = slip.size * across(motion.velocity, middle), across(law.damping(middle, motion), middle)
-    resistance = 0.5 * stiffness + _over(_length(damped), _length(way))
+    resistance = 0.5 * stiffness + middle.sign[:, None] * _over(_length(damped), _length(way))
     tried = stiffness * before + resistance * way
     pulled = stiffness * law.held_displacement(middle, straight, _over(tried, stiffness))
     after = before + _over(pulled - stiffness * before, resistance)
@@ -87,10 +87,12 @@ def rubbing(law: ForceLaw, middle: Contacts, end: Contacts, held: FloatArray, sl
     turned = ~sticks & (np.sum(pulled * slip.used, axis=1, keepdims=True) > 0.0) & (not slip.secant)
     expected, sticks = np.where(turned, tried, pulled), sticks | turned
     bounded = np.where(sticks, np.where(_length(before) < _length(held), stiffness * before, 0.0), pulled)
+    sprung = stiffness != 0.0
+    slopes = resistance[:, :, None] * _directions(middle, expected, tried, sticks | slip.secant)
     return Rubbing(
-        -pulled,
-        -expected,
-        resistance[:, :, None] * _directions(middle, expected, tried, sticks | slip.secant),
+        np.where(sprung, -pulled, damped),
+        np.where(sprung, -expected, damped),
+        np.where(sprung[:, :, None], slopes, 0.0),
         -_over(bounded, _normal_force(law, middle, straight)),
         law.held_displacement(end, Motion(np.zeros_like(way), motion.mass), after),
     )
@@ -102,7 +104,7 @@ def with_mean_gaps(law: ForceLaw, start: Contacts, middle: Contacts, gap: FloatA
     near, far = np.minimum(start.gap, gap), np.maximum(start.gap, gap)
     for _ in range(_HALVINGS):
         between = replace(middle, gap=0.5 * (near + far))
-        weaker = np.sum(law.force(between) * between.normal, axis=1) < force
+        weaker = middle.sign * (np.sum(law.force(between) * between.normal, axis=1) - force) < 0.0
         near, far = np.where(weaker, near, between.gap), np.where(weaker, between.gap, far)
     return replace(middle, gap=0.5 * (near + far))
 
