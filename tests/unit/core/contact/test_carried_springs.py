@@ -1,5 +1,7 @@
 """Tangential springs go with their contacts, and turn with the normals."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -44,6 +46,15 @@ def test_transport_to_the_opposite_normal_is_finite(off):
     after = unit(np.array([[off, -1.0, 0.0]]))
     there = transported(displacement, before, after)
     assert np.linalg.norm(there) == pytest.approx(np.sqrt(5.0), rel=1e-6)
+
+
+def test_springs_of_a_pair_whose_contacts_have_changing_signs_go_with_the_nearest_corners():
+    """Edges that pass each other, their end, and the corner there come in this order."""
+    points, signs = np.array([[-1.0, -0.99], [0.98, -0.99], [1.0, -0.99]]), np.array([1.0, -1.0, 1.0])
+    displacement = np.array([[0.1, 0.0], [0.2, 0.0], [0.3, 0.0]])
+    springs = springs_at(replace(corners(points), sign=signs), displacement, 5.0 * signs, POSE)
+    there = replace(corners(points[::-1]), sign=signs)
+    np.testing.assert_allclose(carried_displacement(springs, there, POSE), displacement[::-1])
 
 
 def test_springs_of_several_contacts_of_a_pair_go_with_the_nearest_corners():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.contact.pairs.body_points import body_arms, placed_points
-from rigidfluid.core.contact.pairs.same_contacts import PointPairs, all_different, distances, nearest_contacts
+from rigidfluid.core.contact.pairs.same_contacts import PointPairs, strictly_rising, distances, nearest_contacts
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.contacts import select
@@ -86,7 +86,7 @@ def _matched(springs: TangentialSprings, contacts: Contacts, pose: Pose) -> tupl
     base = int(max(springs.body_b.max(), contacts.body_b.max())) + 1
     before, now = (2 * (each.body_a * base + each.body_b) for each in (springs, contacts))
     before, now = before + (springs.stiffness > 0.0), now + (contacts.sign > 0.0)
-    if all_different(before) and all_different(now):
+    if strictly_rising(before) and strictly_rising(now):
         _, mine, theirs = np.intersect1d(before, now, assume_unique=True, return_indices=True)
         return mine, theirs
     points = _carried_points(springs, pose)

@@ -28,9 +28,9 @@ def nearest_contacts(first: PointPairs, second: PointPairs) -> tuple[IntArray, I
     return mine, theirs, away[mine, theirs]
 
 
-def all_different(numbers: IntArray) -> bool:
-    """Tell whether no two neighbours of these numbers (m,), which are in order, are the same."""
-    return bool(np.all(numbers[1:] != numbers[:-1]))
+def strictly_rising(numbers: IntArray) -> bool:
+    """Tell whether each of these numbers (m,) is above the one before it, so that all are different and in order."""
+    return bool(np.all(numbers[1:] > numbers[:-1]))
 
 
 def distances(first: PointPairs, second: PointPairs) -> FloatArray:

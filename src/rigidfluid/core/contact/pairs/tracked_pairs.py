@@ -6,7 +6,7 @@ import numpy as np
 
 from rigidfluid.core.contact.pairs.extrapolated_contacts import ExtrapolatedContacts
 from rigidfluid.core.contact.pairs.proximity import detect, interacting, travel
-from rigidfluid.core.contact.pairs.same_contacts import PointPairs, all_different, nearest_contacts
+from rigidfluid.core.contact.pairs.same_contacts import PointPairs, strictly_rising, nearest_contacts
 from rigidfluid.core.geometry.arrays import IntArray
 from rigidfluid.core.model.contacts import joined, select
 from rigidfluid.core.model.force_law import ForceLaw
@@ -38,7 +38,7 @@ class TrackedPairs:
         found = self._detected(pose, (self._reach + 2.0 * moved) * (1.0 + 1e-9))
         numbers = self._numbers(found)
         self._refuse_others(found, np.isin(numbers, self._pairs, invert=True))
-        if all_different(self._pairs) and all_different(numbers):
+        if strictly_rising(self._pairs) and strictly_rising(numbers):
             return select(found, np.searchsorted(numbers, self._pairs))
         expected = ExtrapolatedContacts(self.start, self._pose).extrapolate(pose)
         return self._matched(found, numbers, expected, SAME_PLACE * moved)
@@ -46,7 +46,7 @@ class TrackedPairs:
     def missed(self, law: ForceLaw, pose: Pose) -> float:
         """Energy of the contacts at ``pose`` less that of those tracked there: that of contacts that came, or went,
         untracked."""
-        if all_different(self._pairs) and not self._system.arms.any():
+        if strictly_rising(self._pairs) and not self._system.arms.any():
             return 0.0  # two balls have one contact, and others are refused
         return float(law.energy(self._detected(pose, law.range)).sum() - law.energy(self.extrapolate(pose)).sum())
 
