@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from dry_scenes import ball, dry_scene
+from facet_shapes import CUBE, TRIANGLES, binary_stl
 from scipy.integrate import quad
 from touching import contact
 
@@ -203,6 +204,20 @@ def test_a_pair_that_was_not_foreseen_rejects_the_step():
     assert contacts.extrapolate(right_at(0.5)).gap == pytest.approx([0.15, 0.4])
     with pytest.raises(StepRejected, match=r"body body0.*contact with body1"):
         contacts.extrapolate(right_at(0.46))
+
+
+def test_edges_that_begin_to_pass_within_a_step_are_foreseen_with_their_pair(tmp_path):
+    """A small cube slides over the edge of a large one; the edges' contacts of sign -1 are not there before."""
+    file = str(binary_stl(tmp_path / "cube.stl", CUBE - 0.5, TRIANGLES))
+    large, small = ({"type": "stl", "file": file, "scale": scale, "density": 1.0} for scale in (1.0, 0.4))
+    large, small = large | {"position": [1.0, 1.0, 0.51]}, small | {"position": [1.29, 1.0, 1.225]}
+    law = {"law": "normal", "range": RANGE, "epsilon": 1e-6}
+    system = build_system(dry_scene(law, large, small, end=0.1, step=0.01, upper=[2.0] * 3))
+    contacts = TrackedPairs(system, system.pose, reach=0.03)
+    assert np.all(contacts.start.sign > 0.0)
+    over = system.pose.position + np.array([[0.0] * 3, [0.02, 0.0, 0.0]])
+    there = contacts.extrapolate(Pose(over, system.pose.orientation))
+    np.testing.assert_array_equal(there.body_b, contacts.start.body_b)
 
 
 def test_a_law_that_is_too_weak_is_said_to_be():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.contact.pairs.body_points import body_arms, placed_points
-from rigidfluid.core.contact.pairs.same_contacts import PointPairs, strictly_rising, distances, nearest_contacts
+from rigidfluid.core.contact.pairs.same_contacts import PointPairs, distances, nearest_contacts, strictly_rising
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.contacts import select

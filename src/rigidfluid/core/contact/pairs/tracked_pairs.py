@@ -6,7 +6,7 @@ import numpy as np
 
 from rigidfluid.core.contact.pairs.extrapolated_contacts import ExtrapolatedContacts
 from rigidfluid.core.contact.pairs.proximity import detect, interacting, travel
-from rigidfluid.core.contact.pairs.same_contacts import PointPairs, strictly_rising, nearest_contacts
+from rigidfluid.core.contact.pairs.same_contacts import PointPairs, nearest_contacts, strictly_rising
 from rigidfluid.core.geometry.arrays import IntArray
 from rigidfluid.core.model.contacts import joined, select
 from rigidfluid.core.model.force_law import ForceLaw
@@ -37,7 +37,7 @@ class TrackedPairs:
         moved = float(travel(self._system, self._pose, pose).max())
         found = self._detected(pose, (self._reach + 2.0 * moved) * (1.0 + 1e-9))
         numbers = self._numbers(found)
-        self._refuse_others(found, np.isin(numbers, self._pairs, invert=True))
+        self._refuse_others(found, np.isin(numbers // 2, self._pairs // 2, invert=True))
         if strictly_rising(self._pairs) and strictly_rising(numbers):
             return select(found, np.searchsorted(numbers, self._pairs))
         expected = ExtrapolatedContacts(self.start, self._pose).extrapolate(pose)
