@@ -38,6 +38,8 @@ REFUSED: dict[str, tuple[str, Tables]] = {
     "friction of rolling": ("contact.rolling_friction", {"contact": ROLLING}),
     "a damper": ("contact.restitution: found 0.5", {"contact": NORMAL | {"restitution": 0.5}}),
     "a damper, elsewhere": ("interaction.0.restitution", {"interaction": [NORMAL | {"restitution": 0.5}]}),
+    "friction": ("contact.friction: found 0.5", {"contact": NORMAL | {"friction": 0.5}}),
+    "friction of rolling, elsewhere": ("interaction.0.rolling_friction", {"interaction": [ROLLING]}),
     "two laws": ("interaction: found 2 interactions", {"interaction": [NORMAL, FILM]}),
     "a law for some": ("interaction: found 1 interactions", {"interaction": [NORMAL | {"between": "walls"}]}),
 }

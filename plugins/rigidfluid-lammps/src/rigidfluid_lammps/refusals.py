@@ -64,9 +64,8 @@ def _refuse_law(scene: Scene, system: System) -> None:
     law = system.law
     if isinstance(law, SpringDashpotLaw) and law.rolling:
         allowed = "friction of sliding alone: LAMMPS' couples act at the radii of the enlarged balls"
-        raise CrosscheckError(
-            f"contact.{law.round_option}", "friction of rolling or twisting", allowed, "Leave it out."
-        )
+        subject = f"{system.interactions[0].field}.{law.round_option}"
+        raise CrosscheckError(subject, "friction of rolling or twisting", allowed, "Leave it out.")
     if law is None or isinstance(law, SpringDashpotLaw):
         return
     if all(law is not interaction.law for interaction in system.interactions):
@@ -83,6 +82,9 @@ def _refuse_law(scene: Scene, system: System) -> None:
     if table.restitution is not None:
         allowed = "1: tables of LAMMPS hold no damper, and none of its contacts has this one"
         raise CrosscheckError(f"{field}.restitution", table.restitution, allowed, "Leave it out.")
+    if table.friction:
+        allowed = "0: tables of LAMMPS have no friction; its law 'spring-dashpot' has"
+        raise CrosscheckError(f"{field}.friction", table.friction, allowed, "Leave it out, or choose that law.")
     raise CrosscheckError(
         f"{field}.law",
         repr(law.name),

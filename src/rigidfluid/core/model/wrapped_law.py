@@ -17,6 +17,8 @@ class WrappedLaw(ForceLaw):
         self.law = law
         self.loads = law.loads
         self.film = law.film
+        self.round_option = law.round_option
+        self.acts_in = law.acts_in
         self.conservative = law.conservative
         self.dissipative = law.dissipative
         self.sticking = law.sticking

@@ -107,11 +107,12 @@ def _joints(system: System) -> Feature:
 def _law(system: System, interaction: Interaction) -> str:
     law = interaction.law
     text = f"law {bare(law).name!r} below a gap of {law.range}"
-    if restitution := layer(Restitution, law):
+    restitution, friction = layer(Restitution, law), layer(Friction, law)
+    if restitution:
         text += f" with a restitution of {restitution.restitution:g}"
         text += "" if restitution.loss is None else restitution.loss.words
-    if friction := layer(Friction, law):
-        text += f" and a friction of {friction.friction:g}"
+    if friction:
+        text += f"{' and' if restitution else ' with'} a friction of {friction.friction:g}"
     if interaction.between != "all":
         text += {"walls": " at walls", "pairs": " between bodies"}[interaction.between]
     names = " and ".join(system.surfaces[surface] for surface in interaction.surfaces)

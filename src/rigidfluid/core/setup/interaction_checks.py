@@ -22,10 +22,11 @@ if TYPE_CHECKING:
 def check_interactions(
     interactions: Sequence[Interaction], stepping: ContactStepping, bodies: Sequence[Body], walls: Sequence[Wall]
 ) -> None:
-    """Refuse, with SceneError, laws that would hold the same displacement along surfaces, or count a film twice, and
-    those with an option that the shapes of their ``bodies`` or ``walls`` do not allow."""
+    """Refuse, with SceneError, laws that would hold the same displacement along surfaces, count a film twice or need
+    substeps, and those with an option that the shapes of their ``bodies`` or ``walls`` do not allow."""
     _check_sticking(interactions)
     _check_rolling(interactions, stepping)
+    _check_sliding(interactions, stepping)
     _check_films(interactions)
     for interaction in interactions:
         if interaction.law.round_option:
@@ -34,17 +35,26 @@ def check_interactions(
 
 def _check_round(interaction: Interaction, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
     """Refuse the option of a law for round surfaces where it meets others."""
-    radius = dict(enumerate(body.radius for body in bodies))
-    if interaction.between != "pairs":
-        radius |= {wall.surface: wall.shape.radius for wall in walls}
-    met = interaction.surfaces if len(interaction.surfaces) == 2 else tuple(radius)
-    if any(radius.get(surface) is None for surface in met):
+    radius = dict(enumerate(body.radius for body in bodies)) | {wall.surface: wall.shape.radius for wall in walls}
+    if any(radius.get(surface) is None for surface in _surfaces_met(interaction, len(bodies), walls)):
         option = interaction.law.round_option
         value, field = getattr(interaction.law.options, option), f"{interaction.field}.{option}"
         given, off = ("true", "false") if value is True else (value, "0")
         found = f"{given} for {interaction.law.name!r} with surfaces that are neither round nor flat"
         remedy = f"Set it to {off}, or keep the law to other contacts by `between` or `names`."
         raise SceneError(field, found, "balls, and flat or round walls", remedy)
+
+
+def _surfaces_met(interaction: Interaction, bodies: int, walls: Sequence[Wall]) -> tuple[int, ...]:
+    """Surfaces in whose contacts an interaction acts, with this number of ``bodies``."""
+    own, every_wall = interaction.surfaces, tuple(wall.surface for wall in walls)
+    if len(own) == 2:
+        return own
+    if own and own[0] >= bodies:
+        return (*range(bodies), *own)
+    if own and interaction.between == "walls":
+        return own + every_wall
+    return tuple(range(bodies)) + (() if interaction.between == "pairs" else every_wall)
 
 
 def _check_sticking(interactions: Sequence[Interaction]) -> None:
@@ -63,6 +73,22 @@ def _check_rolling(interactions: Sequence[Interaction], stepping: ContactSteppin
         found, allowed = "'implicit' with springs that resist rolling or twisting", "'substeps'"
         remedy = "Leave it out, or remove `rolling_friction` and `twisting_friction`."
         raise SceneError("contact.stepping", found, allowed, remedy)
+
+
+def _check_sliding(interactions: Sequence[Interaction], stepping: ContactStepping) -> None:
+    """Refuse in implicit steps what resists sliding beside springs, whose friction would bound both together there."""
+    if not stepping.implicit:
+        return
+    for one in (each for each in interactions if each.law.sticking):
+        for other in (each for each in interactions if _slides(each.law)):
+            if _may_meet(one, other):
+                found = f"{other.law.name!r} that resists sliding where {one.field} has a spring along surfaces"
+                remedy = "Leave contact.stepping out, or keep them to different contacts by `between` or `names`."
+                raise SceneError(f"{other.field}.law", found, "one such law in a contact in implicit steps", remedy)
+
+
+def _slides(law: ForceLaw) -> bool:
+    return not law.sticking and (law.friction > 0.0 or (law.film and law.couples))
 
 
 def _check_films(interactions: Sequence[Interaction]) -> None:

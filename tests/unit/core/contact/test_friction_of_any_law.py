@@ -7,8 +7,11 @@ from slopes import FRICTION, GRAVITY, RADIUS, RANGE
 
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
+from rigidfluid.core.contact.laws.friction import Friction, Rubbing
+from rigidfluid.core.contact.laws.repulsion import RepulsionOptions
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import SceneError
+from rigidfluid.forces.normal import NormalLaw
 
 LAWS = "normal", "contact", "barrier"
 RUBBING = {"range": RANGE, "epsilon": "auto", "restitution": 0.2, "friction": FRICTION}
@@ -108,3 +111,16 @@ def test_friction_without_a_law_is_refused():
     data["contact"] = {"friction": 0.3}
     with pytest.raises(SceneError, match="friction"):
         build_system(scene_from_dict(data))
+
+
+@pytest.mark.parametrize(
+    ("declared", "field"),
+    [({"friction": 0.2}, "friction"), ({"sticking": True}, "friction"), ({"sign": "either"}, "tangential_stiffness")],
+)
+def test_friction_is_refused_where_it_would_count_twice_or_be_zero(declared, field):
+    law = NormalLaw(RepulsionOptions(epsilon=1e-3), RANGE)
+    for name, value in declared.items():
+        setattr(law, name, value)
+    with pytest.raises(SceneError) as caught:
+        Friction(law, Rubbing(0.3, None, 1.0, 0.25 * RANGE))
+    assert caught.value.subject == f"contact.{field}"

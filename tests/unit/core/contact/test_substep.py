@@ -13,6 +13,7 @@ from rigidfluid.core.contact.path.substep import RESOLUTION, Reach, plan, relati
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.dynamics import DryDynamics
 from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.interactions import Interaction, SumOfLaws
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Motion, Pose, Twist
 from rigidfluid.forces.normal import NormalLaw
@@ -100,6 +101,15 @@ def test_what_brakes_the_spin_is_resolved() -> None:
     assert_resolved(Brake(0.0, 30.0), 0.05, balls(0.05, CLOSING), 2.0 * 30.0 * 2.0)
     sliding = 9.0 * (INVERSE + 0.525**2 + 0.525**2)
     assert_resolved(Brake(9.0, 30.0), 0.05, balls(0.05, CLOSING), 2.0 * (sliding + 30.0 * 2.0))
+
+
+def test_springs_along_surfaces_of_a_law_that_begins_nearer_than_another_are_resolved() -> None:
+    """k_t (1/m + l²/I) of both, l the distance of the contact from the centre, which lies beyond their law's range."""
+    options = SpringDashpotLaw.Options(stiffness=1e-3, friction=1.0, tangential_stiffness=80.0)
+    laws = SpringDashpotLaw(options, 0.5 * RANGE), spring(1e-3)
+    both = SumOfLaws([Interaction("interaction", law, "all", ()) for law in laws])
+    rate = np.sqrt(80.0 * (INVERSE + 2.0 * 0.54**2))
+    assert_resolved(both, 0.08, balls(0.08, CLOSING), rate)
 
 
 def rate_at(depth: float, epsilon: float) -> float:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from inspect import get_annotations
 
 import numpy as np
 
+from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.signed_law import SignedLaw
 from rigidfluid.core.model.types import Contacts, Motion
 from rigidfluid.forces.spring_dashpot import SpringDashpotLaw, SpringDashpotOptions
@@ -34,3 +36,21 @@ def test_contacts_of_both_signs_cancel_and_without_a_sign_all_is_as_before() -> 
         np.testing.assert_array_equal(found[0], expected[0])
         np.testing.assert_array_equal(found[1], -expected[1])
     assert (signed.sticking, signed.dissipative, signed.friction, signed.ranges) == (True, True, 0.4, (0.2,))
+
+
+def test_a_law_around_another_declares_all_that_this_one_does() -> None:
+    law = SpringDashpotLaw(SpringDashpotOptions(stiffness=3.0), 0.2)
+    declared: dict[str, object] = {
+        "sign": "either",
+        "overlap": "either",
+        "acts_in": "walls",
+        "round_option": "stiffness",
+    }
+    declared |= {"friction": 0.7, "range": 0.3, "loads": None, "conservative": False, "vanishes_at_range": False}
+    declared |= dict.fromkeys(("film", "dissipative", "sticking", "rolling", "couples"), True)
+    assert declared.keys() == {
+        key for key, kind in get_annotations(ForceLaw).items() if not kind.startswith("ClassVar")
+    }
+    for name, value in declared.items():
+        setattr(law, name, value)
+    assert {name: getattr(SignedLaw(law), name) for name in declared} == declared

@@ -35,7 +35,15 @@ ELLIPSE = {"name": "ellipse", "type": "ellipsoid", "semi_axes": [0.1, 0.05], "de
 
 @pytest.mark.parametrize(
     ("where", "refused"),
-    [({}, True), ({"between": "pairs"}, True), ({"names": ["disk"]}, True), ({"names": ["disk", "bottom"]}, False)],
+    [
+        ({}, True),
+        ({"between": "pairs"}, True),
+        ({"between": "walls"}, True),
+        ({"names": ["disk"]}, True),
+        ({"names": ["bottom"]}, True),
+        ({"names": ["disk", "bottom"]}, False),
+        ({"names": ["disk"], "between": "walls"}, False),
+    ],
 )
 def test_a_film_that_resists_sliding_is_for_round_surfaces(where: dict, refused: bool) -> None:
     disk = {"name": "disk", "type": "sphere", "radius": 0.1, "density": 1.0, "position": [0.5, 0.3]}
@@ -47,3 +55,28 @@ def test_a_film_that_resists_sliding_is_for_round_surfaces(where: dict, refused:
         assert told.value.subject == "interaction.0.sliding"
         scene = scene_from_dict(dry_tables(disk, ELLIPSE) | {"interaction": [sliding | {"sliding": False}]})
     assert build_system(scene).law is not None
+
+
+RUBBING = {"law": "normal", "range": 0.02, "epsilon": 1e-3, "friction": 0.5}
+BRAKES = {
+    "a film": FILM | {"sliding": True},
+    "friction without memory": {"law": "spring-dashpot", "range": 0.02, "stiffness": 1e3, "friction": 0.5},
+}
+
+
+@pytest.mark.parametrize("brake", BRAKES.values(), ids=BRAKES)
+def test_springs_along_surfaces_and_another_brake_in_one_contact_need_substeps(brake: dict) -> None:
+    """Implicit steps would bound the sum of both by the friction of the springs."""
+    disk = {"name": "disk", "type": "sphere", "radius": 0.1, "density": 1.0, "position": [0.5, 0.3]}
+
+    def built(stepping: str, between: str):
+        laws = [RUBBING | {"between": "walls"}, brake | {"between": between}]
+        return build_system(
+            scene_from_dict(dry_tables(disk) | {"contact": {"stepping": stepping}, "interaction": laws})
+        )
+
+    with pytest.raises(SceneError, match=r"resists sliding where interaction\.0") as refused:
+        built("implicit", "all")
+    assert refused.value.subject == "interaction.1.law"
+    for stepping, between in (("substeps", "all"), ("implicit", "pairs")):
+        assert built(stepping, between).law.sticking

@@ -42,7 +42,8 @@ class Friction(WrappedLaw):
     wanted over the way from range to there: impacts of a sphere then have one period in both directions (Schäfer,
     Dippel and Wolf, J. Phys. I 6 (1996) 5, doi:10.1051/jp1:1996129).
 
-    SceneError is raised for a law that does not repel.
+    SceneError is raised for a law that does not repel, or has a friction of its own, and without a given k_t for one
+    that may not repel at the smallest gap.
     """
 
     name: ClassVar[str] = "friction"
@@ -52,6 +53,12 @@ class Friction(WrappedLaw):
         if not law.keeps_apart or law.sign == "attracts":
             remedy = "Leave `friction` out, and give it to the law that repels."
             raise SceneError("contact.law", f"a friction for {law.name!r}", "a law that repels", remedy)
+        if law.sticking or law.friction > 0.0:
+            allowed = f"a law without a friction of its own, as {law.name!r} has"
+            raise SceneError("contact.friction", rubbing.friction, allowed, "Remove it, or choose another law.")
+        if law.sign == "either" and rubbing.stiffness is None:
+            allowed = f"a stiffness with {law.name!r}, which may not repel at the smallest gap"
+            raise SceneError("contact.tangential_stiffness", "none", allowed, "Add it.")
         self.dissipative = self.sticking = True
         self.friction = rubbing.friction
         self._rubbing = rubbing

@@ -193,12 +193,13 @@ def _resolved(law: ForceLaw, contacts: Contacts, dynamics: BodyDynamics, approac
 def _tangential_sum(law: ForceLaw, contacts: Contacts, dynamics: BodyDynamics, inverse: FloatArray) -> float:
     """Bound of Σ k/m of springs along the surfaces of all contacts of either body, which turn the bodies too
     [1/time²]."""
-    touching = replace(contacts, gap=np.minimum(contacts.gap, JUST_IN * law.range))
+    touching = [replace(contacts, gap=np.minimum(contacts.gap, JUST_IN * begin)) for begin in law.ranges]
+    stiffness = np.max([law.tangential_stiffness(there) for there in touching], axis=0)
     square = _square_arms(contacts, dynamics)
     if law.rolling:
         square += np.where(np.isnan(contacts.effective_radius), 0.0, contacts.effective_radius**2)[:, None]
     turning = square * _lightest(contacts, dynamics)
-    return _highest_sum(law.tangential_stiffness(touching), contacts, inverse + turning)
+    return _highest_sum(stiffness, contacts, inverse + turning)
 
 
 def _turning_rate(
