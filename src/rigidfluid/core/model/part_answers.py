@@ -138,6 +138,11 @@ def energies(answer: Any, part: Any, contacts: Contacts) -> None:
 
 
 def contacts(answer: Any, part: Any, pose: Pose, mesh: Any, reach: float) -> None:
-    """Refuse contacts of surfaces that there are not, or twice the same ones, and points that are not a gap apart."""
+    """Refuse contacts of surfaces that there are not, or twice the same ones, points that are not a gap apart, and
+    signs that the detector does not declare."""
     refuse_others(answer, Contacts)
     refuse_odd(answer, pose, part.bodies, part.walls)
+    odd = np.flatnonzero((np.abs(answer.sign) if part.signed else answer.sign) != 1.0)
+    if len(odd):
+        allowed = "1 or -1" if part.signed else "1, as `signed` is not set"
+        raise Wrong(f"a sign of {answer.sign[odd[0]]:g}, contact {odd[0]}", allowed)

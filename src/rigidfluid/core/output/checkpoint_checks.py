@@ -44,7 +44,9 @@ _STATE: Shapes = {
         **dict.fromkeys(("load", "load_before", "correction"), "c"),
     },
     "contacts": {
-        **dict.fromkeys(("body_a", "body_b", "gap", "radius_a", "radius_b", "at_wall", "effective_radius"), "m"),
+        **dict.fromkeys(
+            ("body_a", "body_b", "gap", "radius_a", "radius_b", "at_wall", "effective_radius", "sign"), "m"
+        ),
         **dict.fromkeys(("point_a", "point_b", "normal"), "md"),
     },
     "springs": {

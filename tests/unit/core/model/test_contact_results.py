@@ -1,7 +1,7 @@
 """Contacts that no run may go on with, and such as only look odd."""
 
 import sys
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -12,7 +12,10 @@ from rigidfluid.core.geometry.wrong import Wrong
 from rigidfluid.core.model import contact_results
 from rigidfluid.core.model.contact_results import refuse_odd
 from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts
+from rigidfluid.detectors.sphere import SphereDetector
+from rigidfluid.errors import PluginError
 
 COUNTS = pytest.mark.parametrize("count", [2, 12])
 
@@ -96,3 +99,24 @@ def test_points_at_the_origin_are_as_accurate_as_bodies_are_large(count):
     rounded.point_b[0, 0] += 1e-8
     with pytest.raises(Wrong, match="not a gap apart"):
         refuse_odd(rounded, pose, bodies, [])
+
+
+class Signing(SphereDetector):
+    """Gives all contacts one sign."""
+
+    def detect(self, pose, mesh, reach):
+        return replace(super().detect(pose, mesh, reach), sign=self.given)
+
+
+@pytest.mark.parametrize(
+    ("signed", "sign", "refused"), [(False, -1.0, True), (True, -1.0, False), (True, 0.5, True), (True, np.nan, True)]
+)
+def test_signs_are_those_that_a_detector_declares(signed, sign, refused):
+    bodies, pose = in_a_row(ball(0.5), 1)
+    detector = Signing(PartOptions(), bodies, [])
+    detector.signed, detector.given = signed, np.array([sign])
+    if not refused:
+        assert detector.detect(pose, None, 0.2).sign == [sign]
+        return
+    with pytest.raises(PluginError, match="a sign of"):
+        detector.detect(pose, None, 0.2)

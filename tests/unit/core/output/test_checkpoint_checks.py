@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +11,7 @@ from dry_scenes import ball, dry_scene
 
 import rigidfluid
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import Contacts
 from rigidfluid.core.output.checkpoint import Checkpoint, read_checkpoint
 from rigidfluid.core.output.checkpoint_checks import require_sound
 from rigidfluid.core.output.stored_records import Misfit
@@ -45,3 +46,12 @@ def test_arrays_of_a_backend_are_finite(written: Checkpoint, value: float, where
     with pytest.raises(Misfit) as error:
         require_sound(with_arrays(written, np.array([value]), where))
     assert error.value.allowed == "finite numbers"
+
+
+@pytest.mark.parametrize("name", [field.name for field in fields(Contacts)])
+def test_columns_of_contacts_are_of_one_length(written: Checkpoint, name: str) -> None:
+    contacts = written.state.contacts
+    longer = np.zeros((len(contacts) + 1, *getattr(contacts, name).shape[1:]), dtype=getattr(contacts, name).dtype)
+    state = replace(written.state, contacts=replace(contacts, **{name: longer}))
+    with pytest.raises(Misfit, match="state/contacts"):
+        require_sound(replace(written, state=state))
