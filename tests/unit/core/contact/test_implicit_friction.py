@@ -8,7 +8,7 @@ from dry_scenes import ball, dry_scene
 from slopes import FRICTION, GRAVITY, RADIUS, RANGE, STICKING, block_on_slope, sliding_ball
 
 from rigidfluid.core.case.load import scene_from_dict
-from rigidfluid.core.contact.path.implicit_friction import Slip, rubbing, with_mean_gaps
+from rigidfluid.core.contact.path.implicit_friction import Slip, contacts_of_mean_force, rubbing
 from rigidfluid.core.model.signed_law import SignedLaw
 from rigidfluid.core.model.types import Contacts, Motion
 from rigidfluid.core.output.checkpoint import read_checkpoint
@@ -151,7 +151,7 @@ def test_a_contact_of_sign_minus_one_takes_away_what_another_gives(held):
     numbers, gap, flat, sign = np.array([0, 0]), np.full(2, 0.15), np.full(2, np.inf), np.array([1.0, -1.0])
     start = Contacts(numbers, numbers + 1, point + gap[:, None] * normal, point, normal, gap, flat, flat, numbers > 0)
     start = replace(start, sign=sign)
-    middle = with_mean_gaps(law, start, start, np.full(2, 0.11), 0.2 * sign)
+    middle = contacts_of_mean_force(law, start, start, np.full(2, 0.11), 0.2 * sign)
     np.testing.assert_allclose(middle.gap, 0.2 - 0.2 / 3.0)
     slip = Slip(Motion(np.array([[0.2, -0.1]] * 2), np.ones(2)), 0.1, np.zeros((2, 2)), False)
     found = rubbing(law, middle, start, np.array([[held, 0.0]] * 2), slip)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import sparse
 
-from rigidfluid.core.contact.path.implicit_friction import Rubbing, Slip, condensed, rubbing, with_mean_gaps
+from rigidfluid.core.contact.path.implicit_friction import Rubbing, Slip, condensed, contacts_of_mean_force, rubbing
 from rigidfluid.core.model.types import Contacts, Motion
 from rigidfluid.forces.spring_dashpot import SpringDashpotLaw, SpringDashpotOptions
 
@@ -95,7 +95,7 @@ def test_mean_gaps_give_the_mean_force():
     start = contacts_of(2, np.random.default_rng(7), 0.1, 1.5)
     gap = RANGE * np.random.default_rng(8).uniform(0.1, 1.5, COUNT)
     mean = -(LAW.energy(replace(start, gap=gap)) - LAW.energy(start)) / (gap - start.gap)
-    there = with_mean_gaps(LAW, start, start, gap, mean)
+    there = contacts_of_mean_force(LAW, start, start, gap, mean)
     assert np.all((there.gap >= np.minimum(gap, start.gap)) & (there.gap <= np.maximum(gap, start.gap)))
     np.testing.assert_allclose(np.sum(LAW.force(there) * there.normal, axis=1), mean, atol=1e-10)
 

@@ -17,9 +17,9 @@ from rigidfluid.core.contact.path.implicit_friction import (
     Rubbing,
     Slip,
     condensed,
+    contacts_of_mean_force,
     no_rubbing,
     rubbing,
-    with_mean_gaps,
 )
 from rigidfluid.core.contact.path.substep import (
     JUST_IN,
@@ -237,7 +237,7 @@ def _rubbing(encounter: Encounter[M], iterate: _Iterate[M], gap: FloatArray, spr
     """Forces of springs along the surfaces, where the mean forces ``spring`` (m,) lead to the ``gap`` (m,)."""
     law, dynamics, start = encounter.law, encounter.dynamics, encounter.start
     held = carried_displacement(encounter.springs, start, dynamics.pose)
-    middle = with_mean_gaps(law, start, iterate.middle, gap, spring)
+    middle = contacts_of_mean_force(law, start, iterate.middle, gap, spring)
     held = transported(held, start.normal, middle.normal)
     return rubbing(law, middle, replace(middle, gap=iterate.gap), held, slip)
 

@@ -98,7 +98,9 @@ def rubbing(law: ForceLaw, middle: Contacts, end: Contacts, held: FloatArray, sl
     )
 
 
-def with_mean_gaps(law: ForceLaw, start: Contacts, middle: Contacts, gap: FloatArray, force: FloatArray) -> Contacts:
+def contacts_of_mean_force(
+    law: ForceLaw, start: Contacts, middle: Contacts, gap: FloatArray, force: FloatArray
+) -> Contacts:
     """The contacts ``middle`` with gaps between those at the ``start`` and ``gap`` (m,) at which the law has this
     ``force`` (m,), its mean on the way."""
     near, far = np.minimum(start.gap, gap), np.maximum(start.gap, gap)
@@ -117,10 +119,10 @@ def condensed(
     [length/force]."""
     dense = isinstance(response, np.ndarray)
     columns = contacts.normal[:, :, None], rub.rise[:, :, None], rub.stiffness
-    ahead, by_force, slope = (_blocks(entries, dense) for entries in columns)
+    ahead, lift, slope = (_blocks(entries, dense) for entries in columns)
     identity = np.eye(len(response)) if dense else sparse.eye(response.shape[0])
     lag = (rub.expected - along).T.ravel()
-    rise, missing = _solved(identity + slope @ response, by_force - slope @ (response @ ahead), lag)
+    rise, missing = _solved(identity + slope @ response, lift - slope @ (response @ ahead), lag)
     opening = ahead.T @ response
     compliance = opening @ ahead + opening @ rise
     fixed = along + _rows(missing - rise @ normal, len(normal))
