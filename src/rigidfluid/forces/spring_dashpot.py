@@ -81,7 +81,8 @@ class SpringDashpotLaw(ForceLaw):
         C = -R (k_t ζ + x γ R w),   |C across n| ≤ μ_r R |F_n|,   |C along n| ≤ μ_o R |F_n|
 
     with the effective radius R = r_a r_b/(r_a + r_b), r_a at a flat wall, and ζ = ∫ R w dt [length], shortened as ξ is.
-    Its energy is k_t ζ²/2. In 2D bodies roll and do not twist.
+    The dashpot is limited to the bound before the spring, which in fast turning it would else stretch backwards. The
+    energy is k_t ζ²/2. In 2D bodies roll and do not twist.
 
     Notes
     -----
@@ -140,23 +141,26 @@ class SpringDashpotLaw(ForceLaw):
         return held_displacement(self.tangential_stiffness(contacts), damped, most, displacement)
 
     def couple(self, contacts: Contacts, motion: Motion) -> FloatArray:
-        """-x γ R² w of what friction resists, on ``body_a``, (m, k) [force·length]."""
-        coefficient, _, _ = self._dashpot(contacts, motion)
-        damping = self.options.tangential_damping * coefficient * contacts.effective_radius**2
-        resisted = [turning for _, turning in self._resisted(contacts, motion.angular_velocity)]
-        return np.asarray(-damping[:, None] * sum(resisted, np.zeros_like(motion.angular_velocity)))
+        """-x γ R² w of what friction resists, at most what it holds, on ``body_a``, (m, k) [force·length]."""
+        radius, none = contacts.effective_radius[:, None], np.zeros_like(motion.angular_velocity)
+        damped = [force for _, force in self._turning_dashpots(contacts, motion)]
+        return np.asarray(-radius * sum(damped, none))
 
     def held_turning(self, contacts: Contacts, motion: Motion, turning: FloatArray) -> FloatArray:
         """ζ with |k_t ζ + x γ R w| ≤ μ |F_n| along the normal and across it, with its own μ each, (m, k) [length]."""
+        stiffness, resisted = self.tangential_stiffness(contacts), self._resisted(contacts, turning)
+        parts = zip(resisted, self._turning_dashpots(contacts, motion), strict=True)
+        held = [held_displacement(stiffness, damped, most, part) for (_, part), (most, damped) in parts]
+        return np.asarray(sum(held, np.zeros_like(turning)))
+
+    def _turning_dashpots(self, contacts: Contacts, motion: Motion) -> list[tuple[FloatArray, FloatArray]]:
+        """Bound μ |F_n| (m,) [force] of each part of the turning that friction resists, and x γ R w (m, k) up to it
+        [force]."""
         coefficient, speed, _ = self._dashpot(contacts, motion)
         damping = self.options.tangential_damping * coefficient * contacts.effective_radius
-        stiffness, normal_force = self.tangential_stiffness(contacts), self._normal_force(contacts, coefficient * speed)
-        parts = zip(self._resisted(contacts, turning), self._resisted(contacts, motion.angular_velocity), strict=True)
-        held = [
-            held_displacement(stiffness, damping[:, None] * spin, mu * normal_force, part)
-            for (mu, part), (_, spin) in parts
-        ]
-        return np.asarray(sum(held, np.zeros_like(turning)))
+        normal_force = self._normal_force(contacts, coefficient * speed)
+        bounds = [(mu * normal_force, spin) for mu, spin in self._resisted(contacts, motion.angular_velocity)]
+        return [(most, sliding_friction(damping, most, spin)) for most, spin in bounds]
 
     def _resisted(self, contacts: Contacts, turning: FloatArray) -> list[tuple[float, FloatArray]]:
         """Parts of ``turning`` (m, k) that friction resists, each with its coefficient: across and along the normal."""
