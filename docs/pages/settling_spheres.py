@@ -84,7 +84,7 @@ def page(work: Work) -> Page:
     text = ABOUT.format(
         cases=table(CASES, [_case(sphere) for sphere in SPHERES.values()]),
         figures=table(HEAD, [one.row for one in found.values()]),
-        changes=" ".join(_changes(found, name) for name in SPHERES),
+        changes=" ".join(filter(None, (_changes(found, name) for name in SPHERES))),
         measured=table(("Re", *(f"at {time:g}" for time in TIMES)), [_then(sphere) for sphere in SPHERES.values()]),
     )
     return Page("Spheres settle far from walls", text, {"": picture(found)})
