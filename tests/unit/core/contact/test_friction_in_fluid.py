@@ -4,11 +4,11 @@ from functools import cache
 
 import numpy as np
 import pytest
+from ended_runs import run_to_end
 
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.output.checkpoint import read_checkpoint
 from rigidfluid.core.run.run import run
-from rigidfluid.core.run.simulation import Simulation
 
 FRICTION, GRAVITY, RADIUS, RANGE, STIFFNESS = 0.5, 10.0, 0.125, 0.02, 200.0
 SPRING = {"tangential_stiffness": 150.0}
@@ -38,13 +38,6 @@ def disk_on_slope(end, step=4e-3, output=None, mesh=None, **keys):
             "output": {"every": output or end},
         }
     )
-
-
-def run_to_end(scene):
-    simulation = Simulation(scene, None, False)
-    while not simulation.ended:
-        simulation.step()
-    return simulation.state
 
 
 @cache

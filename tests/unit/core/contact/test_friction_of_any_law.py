@@ -3,25 +3,18 @@
 import numpy as np
 import pytest
 from dry_scenes import ball, dry_scene
+from ended_runs import run_to_end
 from slopes import FRICTION, GRAVITY, RADIUS, RANGE
 
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
 from rigidfluid.core.contact.laws.friction import Friction, Rubbing
 from rigidfluid.core.contact.laws.repulsion import RepulsionOptions
-from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import SceneError
 from rigidfluid.forces.normal import NormalLaw
 
 LAWS = "normal", "contact", "barrier"
 RUBBING = {"range": RANGE, "epsilon": "auto", "restitution": 0.2, "friction": FRICTION}
-
-
-def ended(scene):
-    simulation = Simulation(scene, None, False)
-    while not simulation.ended:
-        simulation.step()
-    return simulation.state
 
 
 def disk_on_slope(law, steepness, end):
@@ -35,7 +28,7 @@ def disk_on_slope(law, steepness, end):
 
 def test_a_disk_rests_on_a_slope_below_the_angle_and_slides_above():
     resting, sliding, later = (
-        ended(disk_on_slope("normal", steepness, end)) for steepness, end in ((0.8, 0.6), (1.05, 0.2), (1.05, 0.3))
+        run_to_end(disk_on_slope("normal", steepness, end)) for steepness, end in ((0.8, 0.6), (1.05, 0.2), (1.05, 0.3))
     )
     assert np.linalg.norm(resting.twist.velocity) < 2e-3
     shear = np.sum(resting.springs.stiffness[:, None] * resting.springs.displacement, axis=0)
@@ -52,7 +45,7 @@ def test_an_oblique_impact_slips_by_coulombs_law(law, step):
     """A fast ball at a shallow angle slips all the time: friction takes μ (1 + e) v_n of its speed along the wall, and
     its spin is that impulse's moment."""
     body = ball([0.2, 0.5, 0.16], [3.0, 0.0, -0.5])
-    state = ended(dry_scene(RUBBING | {"law": law}, body, end=0.3, step=step, upper=[3.0, 1.0, 1.0]))
+    state = run_to_end(dry_scene(RUBBING | {"law": law}, body, end=0.3, step=step, upper=[3.0, 1.0, 1.0]))
     velocity, spin = state.twist.velocity[0], state.twist.angular_velocity[0]
     assert velocity[2] == pytest.approx(0.2 * 0.5, rel=0.02)
     lost = FRICTION * (0.5 + velocity[2])
@@ -66,7 +59,7 @@ def test_a_steep_impact_of_a_rough_ball_turns_its_slip_back():
     contact back, as balls of rubber do (Garwin, Am. J. Phys. 37 (1969) 88, doi:10.1119/1.1975420)."""
     contact = RUBBING | {"law": "normal", "restitution": 1.0, "friction": 20.0}
     body = ball([0.2, 0.5, 0.16], [0.1, 0.0, -0.5])
-    state = ended(dry_scene(contact, body, end=0.3, step=1e-3, upper=[3.0, 1.0, 1.0]))
+    state = run_to_end(dry_scene(contact, body, end=0.3, step=1e-3, upper=[3.0, 1.0, 1.0]))
     arm = RADIUS + 0.5 * 0.25 * RANGE
     slip = state.twist.velocity[0, 0] - arm * state.twist.angular_velocity[0, 1]
     assert slip < -0.05

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from dry_scenes import ball, dry_scene
+from ended_runs import run_to_end
 from slopes import FRICTION, GRAVITY, RADIUS, RANGE, STICKING, block_on_slope, sliding_ball
 
 from rigidfluid.core.case.load import scene_from_dict
@@ -13,17 +14,9 @@ from rigidfluid.core.model.signed_law import SignedLaw
 from rigidfluid.core.model.types import Contacts, Motion
 from rigidfluid.core.output.checkpoint import read_checkpoint
 from rigidfluid.core.run.run import run
-from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.forces.spring_dashpot import SpringDashpotLaw, SpringDashpotOptions
 
 IMPLICIT = STICKING | {"stepping": "implicit"}
-
-
-def ended(scene):
-    simulation = Simulation(scene, None, False)
-    while not simulation.ended:
-        simulation.step()
-    return simulation.state
 
 
 def disk_on_slope(steepness, end, step):
@@ -57,20 +50,20 @@ def assert_slides(middle, end, steepness, time):
 @pytest.mark.parametrize("step", [4e-3, pytest.param(5e-4, marks=pytest.mark.long)])
 def test_friction_holds_a_disk_just_below_its_angle(step):
     """It starts with relaxed springs, and slips until the excess of friction over its weight has stopped it."""
-    state = ended(disk_on_slope(0.99, 2.6, step))
+    state = run_to_end(disk_on_slope(0.99, 2.6, step))
     assert_rests(state, 0.99, np.pi * RADIUS**2)
     assert_keeps_its_account(state)
 
 
 @pytest.mark.parametrize("step", [4e-3, pytest.param(5e-4, marks=pytest.mark.long)])
 def test_a_disk_slides_just_above_that_angle(step):
-    middle, end = (ended(disk_on_slope(1.01, time, step)) for time in (0.5, 1.0))
+    middle, end = (run_to_end(disk_on_slope(1.01, time, step)) for time in (0.5, 1.0))
     assert_slides(middle, end, 1.01, 0.5)
     assert_keeps_its_account(end)
 
 
 def test_friction_holds_a_block_in_two_contacts():
-    state = ended(block_on_slope(0.9, end=0.8, step=8e-3, stepping="implicit"))
+    state = run_to_end(block_on_slope(0.9, end=0.8, step=8e-3, stepping="implicit"))
     assert len(state.springs) == 2
     assert_rests(state, 0.9, 0.04)
     assert_keeps_its_account(state)
@@ -78,9 +71,9 @@ def test_friction_holds_a_block_in_two_contacts():
 
 @pytest.mark.long
 def test_a_block_rests_and_slides_at_one_percent_from_the_angle():
-    rests = ended(block_on_slope(0.99, end=2.6, step=4e-3, stepping="implicit"))
+    rests = run_to_end(block_on_slope(0.99, end=2.6, step=4e-3, stepping="implicit"))
     assert_rests(rests, 0.99, 0.04)
-    middle, end = (ended(block_on_slope(1.01, end=time, step=4e-3, stepping="implicit")) for time in (0.5, 1.0))
+    middle, end = (run_to_end(block_on_slope(1.01, end=time, step=4e-3, stepping="implicit")) for time in (0.5, 1.0))
     assert_slides(middle, end, 1.01, 0.5)
     for state in (rests, end):
         assert_keeps_its_account(state)
@@ -88,7 +81,7 @@ def test_a_block_rests_and_slides_at_one_percent_from_the_angle():
 
 @pytest.mark.parametrize("step", [2e-2, 4e-3])
 def test_a_sliding_ball_ends_in_rolling(step):
-    state, resolved = ended(sliding_ball(0.2, step, stepping="implicit")), ended(sliding_ball(0.2, 4e-3))
+    state, resolved = run_to_end(sliding_ball(0.2, step, stepping="implicit")), run_to_end(sliding_ball(0.2, 4e-3))
     np.testing.assert_allclose(state.twist.velocity[0, 0], resolved.twist.velocity[0, 0], rtol=2e-3)
     np.testing.assert_allclose(state.twist.angular_velocity[0, 1], resolved.twist.angular_velocity[0, 1], rtol=5e-3)
     assert_keeps_its_account(state)
@@ -105,7 +98,7 @@ def test_a_rebound_gives_no_energy_whatever_the_step_resolves(step, stiffness, r
     def scene(contact, step):
         return dry_scene(contact | keys, ball([0.5, 0.2], [0.1, -0.2]), end=1.0, step=step)
 
-    state, resolved = ended(scene(IMPLICIT, step)), ended(scene(STICKING, 4e-3))
+    state, resolved = run_to_end(scene(IMPLICIT, step)), run_to_end(scene(STICKING, 4e-3))
     assert state.springs is None
     assert_keeps_its_account(state)
     assert state.ledger.kinetic < state.ledger.initial
@@ -125,7 +118,7 @@ def test_no_step_of_a_heap_with_stiff_springs_fails():
         gravity=[2.0, -10.0],
         upper=[1.2] * 2,
     )
-    state = ended(scene)
+    state = run_to_end(scene)
     assert state.count == 70
     assert len(state.springs) >= 4
     assert_keeps_its_account(state)
@@ -137,7 +130,7 @@ def test_walls_without_springs_keep_their_friction_beside_pairs_with_springs():
     walls = {key: STICKING[key] for key in STICKING if key != "tangential_stiffness"} | {"stiffness": 400.0}
     data = dry_scene({}, disk, other, end=0.06, step=2e-3, gravity=[0.0, -GRAVITY], upper=[3.0, 1.0]).to_dict()
     data["contact"], laws = {"stepping": "implicit"}, [walls | {"between": "walls"}, STICKING | {"between": "pairs"}]
-    alone, beside = (ended(scene_from_dict(data | {"interaction": laws[:count]})) for count in (1, 2))
+    alone, beside = (run_to_end(scene_from_dict(data | {"interaction": laws[:count]})) for count in (1, 2))
     assert alone.twist.velocity[0, 0] < 0.75
     np.testing.assert_allclose(beside.twist.velocity, alone.twist.velocity, atol=1e-6)
     assert_keeps_its_account(beside)

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 from dry_scenes import ball, dry_scene
+from ended_runs import run_to_end
 from slopes import GRAVITY, RADIUS, RANGE, STICKING
 
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
 from rigidfluid.core.output.checkpoint import read_checkpoint
 from rigidfluid.core.run.run import run
-from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import SceneError
 
 ROLLING = STICKING | {"restitution": 0.5, "rolling_friction": 0.1, "twisting_friction": 0.05}
@@ -17,13 +17,6 @@ MASS = 4.0 / 3.0 * np.pi * RADIUS**3
 HEIGHT = RADIUS + RANGE - MASS * GRAVITY / STICKING["stiffness"]
 ARM = 0.5 * (HEIGHT + RADIUS)
 """Of the forces along the floor: they act in the middle of the gap."""
-
-
-def ended(scene):
-    simulation = Simulation(scene, None, False)
-    while not simulation.ended:
-        simulation.step()
-    return simulation.state
 
 
 def on_the_floor(end, slope=0.0, step=4e-3, contact=ROLLING, speed=0.0, spin=0.0, **keys):
@@ -46,7 +39,7 @@ def test_a_ball_stops_where_rolling_friction_has_taken_its_energy():
     speed = 0.4
     slowing = 0.1 * RADIUS * GRAVITY / ARM / (1.0 + 0.4 * (RADIUS / ARM) ** 2)
     stopped = speed / slowing
-    state = ended(on_the_floor(stopped + 0.4, speed=speed))
+    state = run_to_end(on_the_floor(stopped + 0.4, speed=speed))
     assert state.pose.position[0, 0] - 0.3 == pytest.approx(0.5 * speed**2 / slowing, rel=0.02)
     assert np.linalg.norm(state.twist.velocity) < 0.01 * speed
     assert_keeps_its_account(state)
@@ -54,10 +47,10 @@ def test_a_ball_stops_where_rolling_friction_has_taken_its_energy():
 
 def test_a_ball_rests_on_a_slope_below_that_of_rolling_friction_and_rolls_on_a_steeper_one():
     greatest = 0.1 * RADIUS / ARM
-    rests = ended(on_the_floor(0.6, slope=0.95 * greatest))
+    rests = run_to_end(on_the_floor(0.6, slope=0.95 * greatest))
     assert np.linalg.norm(rests.twist.velocity) < 1e-3
     assert rests.springs.turning[0, 1] > 0.0
-    middle, end = (ended(on_the_floor(time, slope=1.1 * greatest)) for time in (0.3, 0.6))
+    middle, end = (run_to_end(on_the_floor(time, slope=1.1 * greatest)) for time in (0.3, 0.6))
     angle = np.arctan(1.1 * greatest)
     driving = GRAVITY * (np.sin(angle) - greatest * np.cos(angle)) / (1.0 + 0.4 * (RADIUS / ARM) ** 2)
     gained = end.twist.velocity[0, 0] - middle.twist.velocity[0, 0]
@@ -69,7 +62,7 @@ def test_a_ball_rests_on_a_slope_below_that_of_rolling_friction_and_rolls_on_a_s
 def test_a_spin_about_the_normal_stops_in_time():
     """I dw/dt = -μ_o R m g, with I = .4 m R²."""
     spin, slowing = 10.0, 0.05 * GRAVITY / (0.4 * RADIUS)
-    middle, end = (ended(on_the_floor(time, spin=spin)) for time in (0.4, spin / slowing + 0.3))
+    middle, end = (run_to_end(on_the_floor(time, spin=spin)) for time in (0.4, spin / slowing + 0.3))
     assert middle.twist.angular_velocity[0, 2] == pytest.approx(spin - 0.4 * slowing, rel=0.01)
     assert abs(end.twist.angular_velocity[0, 2]) < 0.02 * spin
     assert np.linalg.norm(end.twist.angular_velocity[0, :2]) < 1e-9
@@ -78,7 +71,7 @@ def test_a_spin_about_the_normal_stops_in_time():
 
 
 def test_a_ball_that_may_twist_goes_on_spinning():
-    state = ended(on_the_floor(0.2, spin=10.0, twisting_friction=0.0))
+    state = run_to_end(on_the_floor(0.2, spin=10.0, twisting_friction=0.0))
     assert state.twist.angular_velocity[0, 2] == pytest.approx(10.0, rel=1e-12)
 
 
@@ -86,7 +79,7 @@ def test_disks_stop_each_other_from_turning():
     """Two in a row of forces: the couple is opposite on both, so their angular momentum stays."""
     bodies = [ball([0.3 + x, 0.5], [v, 0.0], angular_velocity=w) for x, v, w in ((0.0, 0.1, 3.0), (0.215, -0.1, -1.0))]
     contact = ROLLING | {"restitution": 0.9, "friction": 1e-9, "twisting_friction": 0.0}
-    state = ended(dry_scene(contact, *bodies, end=0.4, step=2e-3))
+    state = run_to_end(dry_scene(contact, *bodies, end=0.4, step=2e-3))
     spins = state.twist.angular_velocity[:, 0]
     assert spins.sum() == pytest.approx(2.0, abs=1e-6)
     assert 0.0 < spins[0] - spins[1] < 3.9
@@ -95,7 +88,7 @@ def test_disks_stop_each_other_from_turning():
 
 def test_fast_turning_stretches_no_spring_backwards():
     """Its dashpots alone would give several times the bound."""
-    state = ended(on_the_floor(0.1, speed=0.4, spin=8.0))
+    state = run_to_end(on_the_floor(0.1, speed=0.4, spin=8.0))
     assert np.abs(state.springs.turning).max() < 1e-15
     assert abs(state.ledger.residual) < 1e-5 * state.ledger.initial
 

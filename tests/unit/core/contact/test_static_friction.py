@@ -3,21 +3,14 @@
 import numpy as np
 import pytest
 from dry_scenes import ball, dry_scene
+from ended_runs import run_to_end
 from slopes import FRICTION, GRAVITY, RADIUS, SIDE, SQUARE, STICKING, block_on_slope, sliding_ball
 
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
 from rigidfluid.core.output.checkpoint import read_checkpoint
 from rigidfluid.core.run.run import run
-from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import SceneError
-
-
-def ended(scene):
-    simulation = Simulation(scene, None, False)
-    while not simulation.ended:
-        simulation.step()
-    return simulation.state
 
 
 @pytest.mark.parametrize(
@@ -25,7 +18,7 @@ def ended(scene):
 )
 def test_a_block_rests_on_a_slope_that_friction_holds(steepness, end, slipped):
     """It starts with relaxed springs, and slips until the excess of friction over its weight has stopped it."""
-    state = ended(block_on_slope(steepness, end))
+    state = run_to_end(block_on_slope(steepness, end))
     assert np.linalg.norm(state.twist.velocity) < 1e-5
     assert 0.0 < state.pose.position[0, 0] - 0.5 < slipped
     shear = np.sum(state.springs.stiffness[:, None] * state.springs.displacement, axis=0)
@@ -34,13 +27,13 @@ def test_a_block_rests_on_a_slope_that_friction_holds(steepness, end, slipped):
 
 
 def test_without_the_spring_it_creeps():
-    state = ended(block_on_slope(0.99, end=0.3, tangential_stiffness=None))
+    state = run_to_end(block_on_slope(0.99, end=0.3, tangential_stiffness=None))
     assert state.twist.velocity[0, 0] > 0.01
     assert state.springs is None
 
 
 def test_a_block_slides_on_a_steeper_slope():
-    middle, end = (ended(block_on_slope(1.01, end=time)) for time in (0.5, 1.0))
+    middle, end = (run_to_end(block_on_slope(1.01, end=time)) for time in (0.5, 1.0))
     angle = np.arctan(1.01 * FRICTION)
     acceleration = GRAVITY * (np.sin(angle) - FRICTION * np.cos(angle))
     gained = end.twist.velocity[0, 0] - middle.twist.velocity[0, 0]
@@ -50,7 +43,7 @@ def test_a_block_slides_on_a_steeper_slope():
 @pytest.mark.parametrize("step", [4e-3, 2e-3, 1e-3, 5e-4])
 def test_a_sliding_ball_ends_in_rolling_and_no_energy_is_made(step):
     """Friction leaves the momentum about the point of contact: the speed falls to 1/(1 + I/(m a²)) of it, a its arm."""
-    state = ended(sliding_ball(end=0.2, step=step))
+    state = run_to_end(sliding_ball(end=0.2, step=step))
     arm = state.pose.position[0, 2] - 0.5 * state.contacts.gap.min()
     rolling = 1.0 / (1.0 + 0.4 * (RADIUS / arm) ** 2)
     velocity, spin = state.twist.velocity[0], state.twist.angular_velocity[0]
@@ -67,7 +60,7 @@ def test_a_ball_that_hits_obliquely_keeps_its_energy_where_it_sticks():
     stiffness = STICKING["stiffness"] / (1.0 + 2.0 * (1.1 * RADIUS / RADIUS) ** 2)
     contact = STICKING | {"restitution": 1.0, "friction": 50.0, "tangential_stiffness": stiffness}
     body = ball([0.5, 0.2], [0.1, -0.2])
-    state = ended(dry_scene(contact, body, end=1.0, step=1e-3))
+    state = run_to_end(dry_scene(contact, body, end=1.0, step=1e-3))
     assert state.springs is None
     assert abs(state.twist.angular_velocity[0, 0]) > 0.1
     assert abs(state.ledger.residual) < 1e-3 * state.ledger.initial
@@ -102,7 +95,7 @@ def test_a_run_that_is_resumed_while_it_sticks_goes_on_with_the_same_bits(tmp_pa
 
 def test_a_shorter_plan_resolves_stiff_springs():
     """Substeps that did not know of these springs would explode."""
-    state = ended(block_on_slope(0.5, end=0.1, step=0.02, tangential_stiffness=4e4))
+    state = run_to_end(block_on_slope(0.5, end=0.1, step=0.02, tangential_stiffness=4e4))
     assert np.linalg.norm(state.twist.velocity) < 0.1
     assert abs(state.ledger.residual) < 5e-3 * abs(state.ledger.gravity)
 
@@ -119,5 +112,5 @@ def test_one_for_walls_and_one_for_pairs_act_as_one():
     lists = [STICKING | {"between": between} for between in ("walls", "pairs")]
     scenes = [dry_scene(STICKING, block, end=0.1, step=2e-3, gravity=[4.0, -GRAVITY], upper=[3.0, 1.0]).to_dict()] * 2
     scenes[1] = scenes[1] | {"contact": {}, "interaction": lists}
-    one, both = (ended(scene_from_dict(scene)) for scene in scenes)
+    one, both = (run_to_end(scene_from_dict(scene)) for scene in scenes)
     np.testing.assert_array_equal(one.pose.position, both.pose.position)
