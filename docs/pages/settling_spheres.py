@@ -41,6 +41,7 @@ RUNS = {
     "re41_half": ("re41", 0.16, 2.5, 0.1),
     "re41_fine": ("re41", 0.08, 1.5, 0.2),
     "re280_coarse": ("re280", 0.16, 2.5, 0.1),
+    "re280_fine": ("re280", 0.1, 2.0, 0.1),
     "re360_coarse": ("re360", 0.16, 2.5, 0.1),
 }
 """By folder: the sphere, cells at it and far from it [D], and the step [√(D/g)]."""
@@ -168,8 +169,8 @@ def _changes(found: dict[str, Settling], name: str) -> str:
     """A sentence on what mesh and step change."""
     coarse = found[f"{name}_coarse"].settled
     said = [
-        f"by {abs(found[other].settled / coarse - 1.0):.2%} where {words} half as {size}"
-        for other, words, size in ((f"{name}_fine", "cells are", "wide"), (f"{name}_half", "steps are", "long"))
+        f"by {abs(found[other].settled / coarse - 1.0):.2%} with {words}"
+        for other, words in ((f"{name}_fine", "the finer cells"), (f"{name}_half", "steps of half the length"))
         if other in found
     ]
     return f"At Re {SPHERES[name].reynolds} the settled speed changes {' and '.join(said)}." if said else ""
@@ -209,9 +210,9 @@ Phys. 209 (2005) 448, doi:10.1016/j.jcp.2005.03.017); reading has errors of 1 to
 
 {measured}
 
-{changes} Cells and steps of the other two were not varied, nor was the box. Both leave the vertical: the wake of a
-sphere that settles loses its symmetry at Reynolds numbers above some 200 (Jenny, Dušek and Bouchet, J. Fluid Mech. 508
-(2004) 201, doi:10.1017/S0022112004009164). At Re 280 the sphere ends near a side of the box. With cells of .16 D the
-boundary layer has about half a cell across, and `rigidfluid` warns of it.
+{changes} At Re 360 neither was varied, at Re 280 not the step, and nowhere the box. Both leave the vertical: the
+wake of a sphere that settles loses its symmetry at Reynolds numbers above some 200 (Jenny, Dušek and Bouchet, J.
+Fluid Mech. 508 (2004) 201, doi:10.1017/S0022112004009164). At Re 280 the sphere of the coarser cells ends near a
+side of the box. With cells of .16 D the boundary layer has about half a cell across, and `rigidfluid` warns of it.
 
 Nothing here was fitted."""
