@@ -10,6 +10,7 @@ from pydantic import Field
 from rigidfluid.core.contact.laws.balls import require_balls
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import cross, moment
+from rigidfluid.core.model.contacts import normal_part
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Loads, Motion
@@ -87,9 +88,9 @@ class LubricationLaw(ForceLaw):
     def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
         """The resistance of the film on ``body_a``, (m, d) [force]."""
         normal, resistance = contacts.normal, self._resistance(contacts)
-        across = np.sum(motion.velocity * normal, axis=1)[:, None] * normal
+        closing = normal_part(motion.velocity, contacts)[:, None] * normal
         rolling = -cross(motion.angular_velocity, normal)
-        resisted = resistance.squeezing[:, None] * across + resistance.sliding[:, None] * (motion.velocity - across)
+        resisted = resistance.squeezing[:, None] * closing + resistance.sliding[:, None] * (motion.velocity - closing)
         return np.asarray(-self.options.viscosity * (resisted + resistance.coupling[:, None] * rolling))
 
     def couple(self, contacts: Contacts, motion: Motion) -> FloatArray:

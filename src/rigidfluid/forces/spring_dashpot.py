@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.coulomb import dashpot_coefficient, held_displacement, sliding_friction
+from rigidfluid.core.model.contacts import normal_part, tangential_part
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Loads, Motion
@@ -173,8 +174,7 @@ class SpringDashpotLaw(ForceLaw):
     def _dashpot(self, contacts: Contacts, motion: Motion) -> tuple[FloatArray, FloatArray, FloatArray]:
         """γ (m,) [force·time/length], and the relative velocity along the normal (m,) and across it (m, d)."""
         coefficient = np.where(self._overlap(contacts) > 0.0, self._coefficient(motion.mass), 0.0)
-        speed = np.sum(motion.velocity * contacts.normal, axis=1)
-        return coefficient, speed, motion.velocity - speed[:, None] * contacts.normal
+        return coefficient, normal_part(motion.velocity, contacts), tangential_part(motion.velocity, contacts)
 
     def _greatest_friction(self, contacts: Contacts, damped: FloatArray) -> FloatArray:
         """μ |F_n| with the force ``damped`` (m,) of the dashpot, (m,) [force]."""

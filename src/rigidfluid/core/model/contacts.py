@@ -1,4 +1,4 @@
-"""Rows of contacts: a choice of them, several parts in one, sorted, and their middles."""
+"""Rows of contacts: a choice of them, several parts in one, sorted, their middles, and parts of vectors there."""
 
 from __future__ import annotations
 
@@ -29,3 +29,13 @@ def in_order(parts: Sequence[Contacts]) -> Contacts:
 def middle(contacts: Contacts) -> FloatArray:
     """Middle between the contact points, (m, d) [length]."""
     return np.asarray(0.5 * (contacts.point_a + contacts.point_b))
+
+
+def normal_part(vectors: FloatArray, contacts: Contacts) -> FloatArray:
+    """Components of ``vectors`` (m, d) along the normals, (m,)."""
+    return np.asarray(np.sum(vectors * contacts.normal, axis=1))
+
+
+def tangential_part(vectors: FloatArray, contacts: Contacts) -> FloatArray:
+    """Parts of ``vectors`` (m, d) along the surfaces, (m, d)."""
+    return np.asarray(vectors - normal_part(vectors, contacts)[:, None] * contacts.normal)

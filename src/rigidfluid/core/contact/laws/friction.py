@@ -10,6 +10,7 @@ import numpy as np
 from rigidfluid.core.contact.laws.restitution import Restitution
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.coulomb import dashpot_coefficient, held_displacement, sliding_friction
+from rigidfluid.core.model.contacts import normal_part, tangential_part
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.types import Contacts, Motion
 from rigidfluid.core.model.wrapped_law import WrappedLaw, layer
@@ -50,7 +51,7 @@ class Friction(WrappedLaw):
 
     def __init__(self, law: ForceLaw, rubbing: Rubbing) -> None:
         super().__init__(law)
-        if not law.keeps_apart or law.sign == "attracts":
+        if not law.keeps_apart:
             remedy = "Leave `friction` out, and give it to the law that repels."
             raise SceneError("contact.law", f"a friction for {law.name!r}", "a law that repels", remedy)
         if law.sticking or law.friction > 0.0:
@@ -68,7 +69,8 @@ class Friction(WrappedLaw):
     def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
         """Damping of the law, and the dashpots along the surfaces on ``body_a``, (m, d) [force]."""
         damping = self.law.damping(contacts, motion)
-        return damping - self._dashpots(contacts, motion, self._most(contacts, damping))
+        most = self._most(contacts, damping)
+        return damping - self._dashpots(contacts, motion, self.tangential_stiffness(contacts), most)
 
     def tangential_stiffness(self, contacts: Contacts) -> FloatArray:
         """k_t within range, (m,) [force/length]."""
@@ -79,23 +81,21 @@ class Friction(WrappedLaw):
     def held_displacement(self, contacts: Contacts, motion: Motion, displacement: FloatArray) -> FloatArray:
         """ξ with a force of at most μ |F_n|, the nearest along that force, (m, d) [length]."""
         most = self._most(contacts, self.law.damping(contacts, motion))
-        damped = self._dashpots(contacts, motion, most)
-        return held_displacement(self.tangential_stiffness(contacts), damped, most, displacement)
+        stiffness = self.tangential_stiffness(contacts)
+        return held_displacement(stiffness, self._dashpots(contacts, motion, stiffness, most), most, displacement)
 
     def _share(self, contacts: Contacts) -> FloatArray:
         """STIFFNESS_RATIO of the force at the smallest gap, over the way from range to there, (m,) [force/length]."""
         gap = self._rubbing.gap
         pressed = replace(contacts, gap=np.full_like(contacts.gap, gap))
-        force = np.sum(self.law.force(pressed) * contacts.normal, axis=1)
-        return np.asarray(STIFFNESS_RATIO * np.maximum(force, 0.0) / (self.range - gap))
+        force = np.maximum(normal_part(self.law.force(pressed), pressed), 0.0)
+        return np.asarray(STIFFNESS_RATIO * force / (self.range - gap))
 
     def _most(self, contacts: Contacts, damping: FloatArray) -> FloatArray:
         """μ |F_n|, (m,) [force], with the law's ``damping`` (m, d)."""
-        normal = np.sum((self.law.force(contacts) + damping) * contacts.normal, axis=1)
-        return np.asarray(self.friction * np.abs(normal))
+        return np.asarray(self.friction * np.abs(normal_part(self.law.force(contacts) + damping, contacts)))
 
-    def _dashpots(self, contacts: Contacts, motion: Motion, most: FloatArray) -> FloatArray:
-        """min(x γ |v_t|, ``most``) v_t/|v_t|, (m, d) [force]."""
-        sliding = motion.velocity - np.sum(motion.velocity * contacts.normal, axis=1)[:, None] * contacts.normal
-        coefficient = dashpot_coefficient(self._restitution, self.tangential_stiffness(contacts), motion.mass)
-        return sliding_friction(self._rubbing.damping * coefficient, most, sliding)
+    def _dashpots(self, contacts: Contacts, motion: Motion, stiffness: FloatArray, most: FloatArray) -> FloatArray:
+        """min(x γ |v_t|, ``most``) v_t/|v_t| beside springs of this ``stiffness`` (m,), (m, d) [force]."""
+        coefficient = self._rubbing.damping * dashpot_coefficient(self._restitution, stiffness, motion.mass)
+        return sliding_friction(coefficient, most, tangential_part(motion.velocity, contacts))

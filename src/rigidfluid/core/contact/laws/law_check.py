@@ -11,7 +11,7 @@ from rigidfluid.core.contact.pairs.representative_contacts import contacts_at_ga
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.guarded import part_error
 from rigidfluid.core.geometry.wrong import Wrong
-from rigidfluid.core.model.contacts import joined, select
+from rigidfluid.core.model.contacts import joined, normal_part, select
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.system import System
@@ -51,13 +51,13 @@ def _some_contact(system: System, interaction: Interaction) -> Contacts:
 
 def _check_law(law: ForceLaw, contacts: Contacts) -> None:
     force, stiffness = law.force(contacts), law.stiffness(contacts)
-    along = np.sum(force * contacts.normal, axis=1)
+    along = normal_part(force, contacts)
     across = np.linalg.norm(force - along[:, None] * contacts.normal, axis=1)
     if np.any(across > _TOLERANCE * np.abs(along)):
         wrong = _wrong(contacts, across, across > 0.0, "forces along the normal, and damping besides")
         raise part_error(law, "force", wrong)
     _check_slope(law, "force", contacts, along, law.energy)
-    _check_slope(law, "stiffness", contacts, stiffness, lambda one: np.sum(law.force(one) * one.normal, axis=1))
+    _check_slope(law, "stiffness", contacts, stiffness, lambda one: normal_part(law.force(one), one))
     for velocity in (contacts.normal, -contacts.normal):
         motion = Motion(velocity, np.ones(len(contacts)))
         power = np.sum(law.damping(contacts, motion) * velocity, axis=1)

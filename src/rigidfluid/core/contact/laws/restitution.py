@@ -10,7 +10,7 @@ from rigidfluid.core.contact.laws.film_loss import FilmLoss
 from rigidfluid.core.contact.laws.hunt_crossley import LEAST, Hardening, excess, excess_by_speed, hardening
 from rigidfluid.core.contact.laws.rough_film import RoughFilm
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.contacts import normal_part, select
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.types import Contacts, Motion
 from rigidfluid.core.model.wrapped_law import WrappedLaw
@@ -63,9 +63,9 @@ class Restitution(WrappedLaw):
         rows = np.flatnonzero((contacts.gap < self.range) & (motion.mass > 0.0))
         if len(rows):
             near = select(contacts, rows)
-            force = np.maximum(np.sum(self.law.force(near) * near.normal, axis=1), 0.0)
+            force = np.maximum(normal_part(self.law.force(near), near), 0.0)
             stored = np.maximum(2.0 * self.law.energy(near) / motion.mass[rows], 0.0)
-            closing = -np.sum(motion.velocity[rows] * near.normal, axis=1)
+            closing = -normal_part(motion.velocity[rows], near)
             excess = self._excess(near, closing, stored, motion.mass[rows])
             damping[rows] = (force * excess)[:, None] * near.normal
         return damping

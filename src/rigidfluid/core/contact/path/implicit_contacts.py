@@ -31,6 +31,7 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.wall import WallVelocities
 from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing
 from rigidfluid.core.model.contacts import middle as centre
+from rigidfluid.core.model.contacts import normal_part, tangential_part
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.kinematics import Kinematics
@@ -185,7 +186,7 @@ def _straight_on(encounter: Encounter[M]) -> _Iterate[M]:
     trial, none = dynamics.copied(), nothing(dynamics.pose)
     trial.kick(none, 0.5 * size)
     motion = relative_motion(start, trial, wall_velocity, law.couples)
-    way = size * _normal_part(motion.velocity, start)
+    way = size * normal_part(motion.velocity, start)
     scale, compliance = np.ones(len(start)), _compliance(law, start, dynamics, size)
     place = dynamics.pose, dynamics.kinematics
     return _Iterate(trial, *place, start, motion, way, start.gap + way, scale, compliance, none)
@@ -214,7 +215,7 @@ def _evaluate(encounter: Encounter[M], wrench: Wrench, place: Kinematics) -> _It
     gap = contacts_at(trial.pose).gap
     if np.any(gap <= 0.0):
         raise _rejected("an overlap where they take the bodies")
-    way = size * _normal_part(motion.velocity, middle)
+    way = size * normal_part(motion.velocity, middle)
     moves = np.abs(way) > _STILL * law.range
     scale = np.divide(gap - start.gap, way, out=np.ones_like(way), where=moves)
     return _Iterate(trial, pose, kinematics, middle, motion, way, gap, np.clip(scale, *_SCALES), compliance, wrench)
@@ -254,14 +255,14 @@ def _springs(encounter: Encounter[M], iterate: _Iterate[M], rub: Rubbing) -> Tan
 def _dampers(law: ForceLaw, iterate: _Iterate[M], size: float) -> _Dampers:
     if not law.dissipative:
         return _Dampers(np.zeros_like(iterate.way), np.zeros_like(iterate.middle.normal))
-    speed, normal = _normal_part(iterate.motion.velocity, iterate.middle), iterate.middle.normal
+    speed, normal = normal_part(iterate.motion.velocity, iterate.middle), iterate.middle.normal
     speed = np.where(speed == 0.0, 1.0, speed)
     straight = law.damping(iterate.middle, Motion(speed[:, None] * normal, iterate.motion.mass))
-    across = -_normal_part(straight, iterate.middle) / speed / size
+    across = -normal_part(straight, iterate.middle) / speed / size
     whole, couple = evaluate_damping(law, iterate.middle, iterate.motion)
     if law.sticking:
         return _Dampers(across, np.zeros_like(normal), couple)
-    return _Dampers(across, whole - _normal_part(whole, iterate.middle)[:, None] * normal, couple)
+    return _Dampers(across, tangential_part(whole, iterate.middle), couple)
 
 
 def _converged(law: ForceLaw, iterate: _Iterate[M], gap: FloatArray, missing: FloatArray) -> bool:
@@ -345,10 +346,6 @@ def _crossing(
     if lost < (-KEPT * stored if encounter.law.sticking else 0.0):
         raise _rejected("dampers that would give energy")
     return Crossing(iterate.dynamics, iterate.wrench, lost, wall_work, stored, springs)
-
-
-def _normal_part(vector: FloatArray, contacts: Contacts) -> FloatArray:
-    return np.asarray(np.sum(vector * contacts.normal, axis=1))
 
 
 def _rejected(found: str) -> StepRejected:

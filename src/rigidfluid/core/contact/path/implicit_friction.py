@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy import sparse
 
-from rigidfluid.core.contact.path.stretched import across
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.model.contacts import normal_part, tangential_part
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.types import Contacts, Motion
 
@@ -76,9 +76,10 @@ def rubbing(law: ForceLaw, middle: Contacts, end: Contacts, held: FloatArray, sl
     the one used: the slip went too far.
     """
     motion, stiffness = slip.motion, law.tangential_stiffness(middle)[:, None]
-    straight = Motion(motion.velocity - across(motion.velocity, middle), motion.mass)
+    straight = Motion(motion.velocity - tangential_part(motion.velocity, middle), motion.mass)
     before = law.held_displacement(middle, straight, held)
-    way, damped = slip.size * across(motion.velocity, middle), across(law.damping(middle, motion), middle)
+    way = slip.size * tangential_part(motion.velocity, middle)
+    damped = tangential_part(law.damping(middle, motion), middle)
     resistance = 0.5 * stiffness + middle.sign[:, None] * _over(_length(damped), _length(way))
     tried = stiffness * before + resistance * way
     pulled = stiffness * law.held_displacement(middle, straight, _over(tried, stiffness))
@@ -106,7 +107,7 @@ def contacts_of_mean_force(
     near, far = np.minimum(start.gap, gap), np.maximum(start.gap, gap)
     for _ in range(_HALVINGS):
         between = replace(middle, gap=0.5 * (near + far))
-        weaker = middle.sign * (np.sum(law.force(between) * between.normal, axis=1) - force) < 0.0
+        weaker = middle.sign * (normal_part(law.force(between), between) - force) < 0.0
         near, far = np.where(weaker, near, between.gap), np.where(weaker, between.gap, far)
     return replace(middle, gap=0.5 * (near + far))
 
@@ -168,8 +169,7 @@ def _directions(contacts: Contacts, pulled: FloatArray, tried: FloatArray, also_
 
 
 def _normal_force(law: ForceLaw, contacts: Contacts, motion: Motion) -> FloatArray:
-    force = law.force(contacts) + law.damping(contacts, motion)
-    return np.asarray(np.sum(force * contacts.normal, axis=1, keepdims=True))
+    return normal_part(law.force(contacts) + law.damping(contacts, motion), contacts)[:, None]
 
 
 def _length(vectors: FloatArray) -> FloatArray:

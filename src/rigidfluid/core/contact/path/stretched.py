@@ -9,6 +9,7 @@ import numpy as np
 
 from rigidfluid.core.contact.pairs.carried_springs import carried_springs, springs_at
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.contacts import tangential_part
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.tangential_springs import TangentialSprings, spring_energy
 from rigidfluid.core.model.types import Contacts, Motion, Pose
@@ -35,7 +36,7 @@ def stretched(
     change of the energy k ξ²/2: nothing where the surfaces stick. So it is for the turning ζ, by R w Δt.
     """
     carried, turned = carried_springs(before, contacts, pose)
-    way = time * across(motion.velocity, contacts)
+    way = time * tangential_part(motion.velocity, contacts)
     stiffness = law.tangential_stiffness(contacts)
     displacement = law.held_displacement(contacts, motion, carried + way)
     work, couple, turning = float(np.sum(stiffness[:, None] * 0.5 * (carried + displacement) * way)), None, None
@@ -48,8 +49,3 @@ def stretched(
     springs = springs_at(contacts, displacement, stiffness, pose, turning)
     lost = work + spring_energy(before) - spring_energy(springs)
     return Stretched(-stiffness[:, None] * displacement, couple, springs if len(springs) else None, lost)
-
-
-def across(vector: FloatArray, contacts: Contacts) -> FloatArray:
-    """Part of vectors (m, d) along the surfaces."""
-    return np.asarray(vector - np.sum(vector * contacts.normal, axis=1)[:, None] * contacts.normal)

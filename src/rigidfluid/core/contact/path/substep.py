@@ -12,7 +12,7 @@ from rigidfluid.core.contact.laws.stiffness import contacts_on_the_way, greatest
 from rigidfluid.core.contact.path.delassus import delassus
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.wall import WallVelocities
-from rigidfluid.core.model.contacts import middle, select
+from rigidfluid.core.model.contacts import middle, normal_part, select
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.part_results import refuse_no_number
@@ -105,7 +105,7 @@ def _approach(law: ForceLaw, contacts: Contacts, dynamics: BodyDynamics, reach: 
     twist, arm = dynamics.twist, _pair_values(reach.arms, contacts)
     spin = _pair_values(reach.arms * np.linalg.norm(twist.angular_velocity, axis=1), contacts)
     velocity = _relative(twist.velocity, contacts)
-    opening = np.sum(velocity * contacts.normal, axis=1)
+    opening = normal_part(velocity, contacts)
     inside, tumbling = law.range - contacts.gap, np.asarray(arm.any(axis=1))
     energy = _radial_energy(contacts, dynamics, velocity, opening, inside)
     if tumbling.any():
