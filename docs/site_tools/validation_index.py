@@ -41,6 +41,7 @@ SUBJECTS = {
         "explicit_coupling": "Light bodies, contacts and new meshes: one system compared with explicit coupling",
         "stability": "Extreme contacts and densities: which runs succeed, and which fail",
         "contact_stepping": "Substeps and implicit steps: error against run time",
+        "domino_rows": "Rows of dominoes: speed compared with a published theory",
         "lammps": "200 dry spheres compared with LAMMPS",
     },
     "Stokes flow and swimmers": {

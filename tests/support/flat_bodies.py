@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from dry_scenes import dry_scene
 
+from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.scene.scene import Scene
 
 GRAVITY = 10.0
@@ -19,8 +20,11 @@ SHELL = 0.02
 COURSES = 3, 2, 3, 2
 """Bricks in each course of a wall in running bond."""
 
-PITCH, THICKNESS = 0.4, 0.12
-"""Distance and thickness of dominoes of height 1 [length]."""
+GAP, THICKNESS = 0.28, 0.12
+"""Gap between dominoes of height 1, and their thickness [length]."""
+
+ON_THE_FLOOR = 2.0
+"""Friction that keeps the lower edges of dominoes in their places [1]."""
 
 DOMINO_SHELL, DOMINO_STEP, LEAN = 0.01, 2e-3, 0.25
 """Range of the law between dominoes [length], step [time] where the gravity is 10, angle of the first one [rad]."""
@@ -56,23 +60,35 @@ def brick_wall(end: float, courses: tuple[int, ...] = COURSES, friction: float =
     return dry_scene(law | sticking, *bricks, end=end, step=2e-3, gravity=[0.0, -GRAVITY], upper=[4.0, 2.0])
 
 
-def domino_row(count: int, end: float, gravity: float = GRAVITY) -> Scene:
+def domino_row(
+    count: int,
+    end: float,
+    gravity: float = GRAVITY,
+    friction: float = 0.3,
+    gap: float = GAP,
+    floor: float = ON_THE_FLOOR,
+) -> Scene:
     """Dominoes that stand in a row; the first leans on its corner and falls on the next. ``end`` and steps are those of
-    a gravity of 10, and shorter by its root where it is more."""
-    weight, faster = THICKNESS * gravity, np.sqrt(GRAVITY / gravity)
+    a gravity of 10, and shorter by its root where it is more. ``friction`` is that of dominoes on each other."""
+    weight, faster, pitch = THICKNESS * gravity, np.sqrt(GRAVITY / gravity), gap + THICKNESS
     stiffness = 3e3 * weight
     lift = DOMINO_SHELL - 0.5 * weight / stiffness
     row = []
     for number in range(count):
         lean = LEAN if number == 0 else 0.0
         across = np.array([np.cos(lean), -np.sin(lean)]) * -0.5 * THICKNESS
-        foot = np.array([0.6 + number * PITCH + 0.5 * THICKNESS, lift])
+        foot = np.array([0.6 + number * pitch + 0.5 * THICKNESS, lift])
         place = foot + across + 0.5 * np.array([np.sin(lean), np.cos(lean)])
         row.append(rectangle(THICKNESS, 1.0, place.tolist(), -lean))
-    law = {"law": "spring-dashpot", "range": DOMINO_SHELL, "stiffness": stiffness, "restitution": 0.3, "substeps": 10}
-    sticking = {"friction": 0.3, "tangential_stiffness": 0.8 * stiffness}
-    size = {"end": end * faster, "step": DOMINO_STEP * faster, "upper": [count * PITCH + 2.6, 2.0]}
-    return dry_scene(law | sticking, *row, gravity=[0.0, -gravity], **size)
+    law = {"law": "spring-dashpot", "range": DOMINO_SHELL, "stiffness": stiffness, "restitution": 0.3}
+    size = {"end": end * faster, "step": DOMINO_STEP * faster, "upper": [count * pitch + 2.6, 2.0]}
+    data = dry_scene({"substeps": 10}, *row, gravity=[0.0, -gravity], **size).to_dict()
+    sticking = {"tangential_stiffness": 0.8 * stiffness}
+    data["interaction"] = [
+        law | ({"friction": friction} | sticking if friction > 0.0 else {}) | {"between": "pairs"},
+        law | {"friction": floor} | sticking | {"between": "walls"},
+    ]
+    return scene_from_dict(data)
 
 
 def gear_pair(teeth: tuple[int, int], speed: float, end: float) -> Scene:
