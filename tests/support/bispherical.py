@@ -50,6 +50,23 @@ def film_resistance(gap: float, radius_b: float) -> FloatArray:
     return np.linalg.inv(relative @ np.linalg.solve(resistance(gap, radius_b), relative.T))
 
 
+@cache
+def twisting_resistance(gap: float, radius_b: float) -> float:
+    """Resistance of a pair that nothing else holds to ω_a - ω_b along the axis, with viscosity 1: sums over the images
+    of spheres that spin (Jeffery, Proc. London Math. Soc. s2-14 (1915) 327)."""
+    alpha, beta, c = _coordinates(gap, radius_b)
+    n = (alpha - beta) * np.arange(1.0, int(E_FOLDS / (alpha - beta)) + 10)
+
+    def images(distance: FloatArray) -> float:
+        return float(8.0 * np.pi * np.sum((c / np.sinh(distance)) ** 3))
+
+    a = images(n + beta)
+    if np.isinf(radius_b):
+        return a
+    b, both = images(n - alpha), -images(n)
+    return (a * b - both**2) / (a + b + 2.0 * both)
+
+
 def _coordinates(gap: float, radius_b: float) -> tuple[float, float, float]:
     """α, β and c."""
     distance = 1.0 + radius_b + gap

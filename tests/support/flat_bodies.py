@@ -69,7 +69,8 @@ def domino_row(
     floor: float = ON_THE_FLOOR,
 ) -> Scene:
     """Dominoes that stand in a row; the first leans on its corner and falls on the next. ``end`` and steps are those of
-    a gravity of 10, and shorter by its root where it is more. ``friction`` is that of dominoes on each other."""
+    a gravity of 10, and shorter by its root where it is more. ``friction`` is that of dominoes on each other. A wall
+    stands where the next domino would."""
     weight, faster, pitch = THICKNESS * gravity, np.sqrt(GRAVITY / gravity), gap + THICKNESS
     stiffness = 3e3 * weight
     lift = DOMINO_SHELL - 0.5 * weight / stiffness
@@ -81,7 +82,7 @@ def domino_row(
         place = foot + across + 0.5 * np.array([np.sin(lean), np.cos(lean)])
         row.append(rectangle(THICKNESS, 1.0, place.tolist(), -lean))
     law = {"law": "spring-dashpot", "range": DOMINO_SHELL, "stiffness": stiffness, "restitution": 0.3}
-    size = {"end": end * faster, "step": DOMINO_STEP * faster, "upper": [count * pitch + 2.6, 2.0]}
+    size = {"end": end * faster, "step": DOMINO_STEP * faster, "upper": [0.6 + count * pitch - 0.5 * THICKNESS, 2.0]}
     data = dry_scene({"substeps": 10}, *row, gravity=[0.0, -gravity], **size).to_dict()
     sticking = {"tangential_stiffness": 0.8 * stiffness}
     data["interaction"] = [

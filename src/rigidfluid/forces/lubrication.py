@@ -1,4 +1,4 @@
-"""The resistance of a film that is too thin for the mesh, to squeezing, sliding and rolling."""
+"""The resistance of a film that is too thin for the mesh, to squeezing, sliding, rolling and twisting."""
 
 from __future__ import annotations
 
@@ -22,32 +22,34 @@ class LubricationOptions(PartOptions):
     """Keys of a table with law ``lubrication``.
 
     ``viscosity``: dynamic, of the film, μ [mass·length^(2-d)/time]. ``cutoff``: the gap below which the resistance
-    grows no further [length]. ``sliding``: whether the film resists sliding and rolling too, between round and flat
-    surfaces; if not, it is the leading term of squeezing. Meshes mostly resolve sliding where they do not squeezing.
+    grows no further [length]. ``sliding``: whether the film resists sliding, rolling and twisting too, between round
+    and flat surfaces; if not, it is the leading term of squeezing. Meshes mostly resolve sliding where they do not
+    squeezing.
     """
 
     viscosity: float = Field(gt=0, description="Dynamic viscosity μ of the film [mass·length^(2-d)/time]")
     cutoff: float = Field(gt=0, description="Gap below which the resistance grows no further [length]")
     sliding: bool = Field(
         default=False,
-        description="Whether the film resists sliding and rolling too, for which surfaces must be round or flat; if"
-        " not, squeezing by its leading term alone",
+        description="Whether the film resists sliding, rolling and twisting too, for which surfaces must be round or"
+        " flat; if not, squeezing by its leading term alone",
     )
 
 
 class LubricationLaw(ForceLaw):
-    """F = -μ (N v_n n + S v_t + Q n × w) and the couple C = -μ (Q v_t + W n × w) × n on ``body_a``, for gap < range.
+    """F = -μ (N v_n n + S v_t + Q n × w) and the couple C = -μ [(Q v_t + W n × w) × n + T w_n n] on ``body_a``, for
+    gap < range.
 
     v is the relative velocity of the surfaces half-way between them, v_n along the normal n and v_t across it, w their
-    relative angular velocity. N, S, Q and W are the resistances of `film_resistance` to squeezing, sliding, both and
-    rolling at h = max(gap, cutoff) minus those at range, as the mesh resolves a film as thick as that: range is to be
-    the gap where the mesh begins to fail. The leading terms of N are 6πR²/h in 3D and 3√2 π (R/h)^(3/2) in 2D, those of
-    the others grow as ln(R/h) and √(R/h); R is the contact's effective radius, r_a r_b/(r_a + r_b). Spin about the
-    normal is not resisted: that resistance stays finite in contact, and from a gap of R/10 on it grows by 3 % between
-    equal balls, by 8 % at a flat wall.
+    relative angular velocity, w_n its part along n. N, S, Q, W and T are the resistances of `film_resistance` to
+    squeezing, sliding, both, rolling and twisting at h = max(gap, cutoff) minus those at range, as the mesh resolves a
+    film as thick as that: range is to be the gap where the mesh begins to fail. The leading terms of N are 6πR²/h in 3D
+    and 3√2 π (R/h)^(3/2) in 2D, those of the others grow as ln(R/h) and √(R/h); R is the contact's effective radius,
+    r_a r_b/(r_a + r_b). Twisting is resisted in 3D alone, and finitely in contact: from a gap of R/10 on that grows by
+    3 % between equal balls, by 8 % at a flat wall.
 
     Without ``sliding`` N is its leading term, with an R that ellipsoids have too, by both surfaces' curvatures, and S,
-    Q and W are zero. The film takes energy out and holds nothing at rest, so its own force, energy and stiffness are
+    Q, W and T are zero. The film takes energy out and holds nothing at rest, so its own force, energy and stiffness are
     zero.
 
     A cutoff that is not below range raises SceneError. So do surfaces that are neither round nor flat with ``sliding``,
@@ -97,7 +99,10 @@ class LubricationLaw(ForceLaw):
         """The couple of the film on ``body_a``, (m, k) [force·length]."""
         resistance, rolling = self._resistance(contacts), -cross(motion.angular_velocity, contacts.normal)
         resisted = resistance.coupling[:, None] * motion.velocity + resistance.rolling[:, None] * rolling
-        return -self.options.viscosity * moment(resisted, contacts.normal)
+        couple = moment(resisted, contacts.normal)
+        if contacts.normal.shape[1] == 3:
+            couple += (resistance.twisting * normal_part(motion.angular_velocity, contacts))[:, None] * contacts.normal
+        return -self.options.viscosity * couple
 
     def _resistance(self, contacts: Contacts) -> FilmResistance:
         """Resistances that the mesh does not resolve."""
@@ -110,7 +115,7 @@ class LubricationLaw(ForceLaw):
         radius = _effective_radius(contacts)
         squeezing = leading_squeezing(film, radius, dimension) - leading_squeezing(end, radius, dimension)
         none = np.zeros_like(squeezing)
-        return FilmResistance(squeezing, none, none, none)
+        return FilmResistance(squeezing, none, none, none, none)
 
 
 def _effective_radius(contacts: Contacts) -> FloatArray:

@@ -108,11 +108,30 @@ def test_no_motion_gains_energy_not_even_in_a_hollow(unlike: float, dimension: i
         assert beyond.coupling[0] ** 2 <= (1.0 + 1e-12) * beyond.sliding[0] * beyond.rolling[0]
 
 
-def test_spin_about_the_normal_is_free() -> None:
-    touching = contact(0.02, RADIUS, np.inf, 3)
-    motion = Motion(np.zeros((1, 3)), np.ones(1), touching.normal)
-    for answer in (law(0.1).damping, law(0.1).couple):
-        np.testing.assert_allclose(answer(touching, motion), 0.0, atol=1e-12)
+@pytest.mark.parametrize("radius_b", CENTRES.values(), ids=CENTRES.keys())
+@pytest.mark.parametrize("gap", [0.05, 0.01, 1e-3, 1e-4])
+def test_spheres_that_twist_are_resisted_as_in_the_exact_solution(gap: float, radius_b: float) -> None:
+    """To .3 % of the whole resistance, of which most is that at range."""
+    touching = contact(gap * RADIUS * _part(radius_b), RADIUS, radius_b * RADIUS, 3)
+    motion = Motion(np.zeros((1, 3)), np.ones(1), -1.5 * touching.normal)
+    law_ = law(0.1 * RADIUS * _part(radius_b))
+    thin, thick = (bispherical.twisting_resistance(one * _part(radius_b), radius_b) for one in (gap, 0.1))
+    np.testing.assert_allclose(law_.damping(touching, motion), 0.0, atol=1e-12)
+    added = np.sum(law_.couple(touching, motion) * touching.normal) / (1.5 * VISCOSITY * RADIUS**3)
+    assert added == pytest.approx(thin - thick, rel=0.0, abs=3e-3 * thin)
+    assert added > 0.0
+
+
+def _part(radius_b: float) -> float:
+    """Effective radius over that of a."""
+    return 1.0 / (1.0 + 1.0 / radius_b)
+
+
+def test_twisting_beside_a_wall_is_that_of_the_zeta_function_in_contact() -> None:
+    assert bispherical.twisting_resistance(1e-7, np.inf) == pytest.approx(8.0 * np.pi * 1.2020569, rel=1e-5)
+    halves = [bispherical.twisting_resistance(gap, 1.0) for gap in (0.2, 40.0)]
+    assert halves[0] == pytest.approx(0.5 * bispherical.twisting_resistance(0.1, np.inf), rel=1e-9)  # plane half-way
+    assert halves[1] == pytest.approx(4.0 * np.pi, rel=1e-4)
 
 
 @pytest.mark.parametrize("gap", [1e-2, 1e-4])
