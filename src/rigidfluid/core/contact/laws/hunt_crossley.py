@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
-
-if TYPE_CHECKING:
-    from scipy.interpolate import CubicSpline
+from rigidfluid.core.geometry.piecewise_cubic import PiecewiseCubic
 
 LEAST = 0.05
 """Least restitution: at range the force is then 21 times the law's own, and that grows as 1/e."""
@@ -86,21 +84,19 @@ def _hardening_by_logarithm(logarithm: FloatArray) -> Hardening:
 
 
 @lru_cache(maxsize=1)
-def _logarithm() -> CubicSpline:
-    """Spline of L over the restitution; near 1 it is 3 (1 - e)."""
-    from scipy.interpolate import CubicSpline
-
+def _logarithm() -> PiecewiseCubic:
+    """L over the restitution; near 1 it is 3 (1 - e)."""
     logarithm = np.linspace(1e-3, 1.0 + 1.1 / LEAST, 10 * _NODES)
-    harder = _hardening_by_logarithm(logarithm)
-    restitution = harder.least / harder.most
-    return CubicSpline(np.append(restitution[::-1], 1.0), np.append(logarithm[::-1], 0.0))
+    most, least, room = _hardening_by_logarithm(logarithm)
+    fall = room / logarithm - room**2 / logarithm - room
+    slope = -(most**2) / (fall * most + least * (1.0 + fall))
+    ends = (np.append(one[::-1], end) for one, end in ((least / most, 1.0), (logarithm, 0.0), (slope, -3.0)))
+    return PiecewiseCubic(*ends)
 
 
 @lru_cache
-def _excess_per_share(restitution: float) -> CubicSpline:
-    """Spline of y/share over the share, √(2 G(x)) at rest; nodes are even in ln(1 + y)."""
-    from scipy.interpolate import CubicSpline
-
+def _excess_per_share(restitution: float) -> PiecewiseCubic:
+    """Excess y/share over the share, √(2 G(x)) at rest; nodes are even in ln(1 + y)."""
     most, _, room = (float(one) for one in hardening(np.array(restitution)))
     ends = np.log(room), 0.0, np.log1p(most)
     nodes = np.concatenate([np.linspace(*ends[:2], _NODES), np.linspace(*ends[1:], _NODES)[1:]])
@@ -109,4 +105,4 @@ def _excess_per_share(restitution: float) -> CubicSpline:
     ratio = np.sqrt(y**2 + 2.0 * left)
     share = y / ratio
     share[[0, -1]] = -1.0, 1.0
-    return CubicSpline(share, ratio)
+    return PiecewiseCubic(share, ratio, y**2 / (1.0 + y - share**2 * y))
