@@ -54,7 +54,7 @@ WITHIN = {
 }
 """Rooms within rooms, and which others of the same room each imports, besides modules that are in none of them."""
 
-POST = {"reports": "", "movies": "reports", "insertion": "reports", "studies": "reports", "comparison": "reports"}
+POST = {"reports": ""} | dict.fromkeys(("movies", "insertion", "statistics", "studies", "comparison"), "reports")
 """What each room of post imports from it, besides modules that are in none of them."""
 
 

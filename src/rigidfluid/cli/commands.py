@@ -21,6 +21,7 @@ from rigidfluid.cli.console import (
     tell_aside,
 )
 from rigidfluid.cli.options import (
+    Across,
     Backends,
     CompareFolder,
     Continue,
@@ -37,7 +38,9 @@ from rigidfluid.cli.options import (
     Resume,
     Shown,
     ShownEvery,
+    Since,
     StudyFile,
+    Until,
     Version,
     View,
 )
@@ -53,6 +56,7 @@ from rigidfluid.cli.tables import (
     print_insertion,
     print_notes,
     print_pairs,
+    print_statistics,
     print_study,
     print_verdict,
 )
@@ -199,6 +203,21 @@ def report(folder: Folder, plane: Plane = "motion", follow: Looked = None) -> No
 
         for path in make_report(folder, plane, follow):
             tell(f"wrote {path}")
+
+
+@app.command()
+def statistics(
+    folder: Folder, since: Since = None, until: Until = None, across: Across = "y", json_file: JsonFile = None
+) -> None:
+    """Measure structure, motion and contacts of the bodies in a folder's results, as means with their errors."""
+    with reported():
+        from rigidfluid.post.statistics import statistics as measure
+
+        found, written = measure(folder, since, until, across)
+        if json_file is not None:
+            write_json(found.to_dict(), json_file)
+        print_statistics(found)
+        tell(f"wrote to {folder}: {', '.join(path.name for path in written)}")
 
 
 @app.command()

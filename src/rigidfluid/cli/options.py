@@ -18,6 +18,11 @@ def _backend_names() -> list[str]:
 
 
 Folder = Annotated[Path, typer.Argument(metavar="DIR", help="Folder that a run has written.")]
+Since = Annotated[
+    float | None, typer.Option("--since", help="First time of the statistics; a third of the run if not given.")
+]
+Until = Annotated[float | None, typer.Option("--until", help="Last time of the statistics; the end if not given.")]
+Across = Annotated[str, typer.Option("--across", metavar="AXIS", help="Axis across which there are profiles.")]
 OutFolder = Annotated[
     Path | None, typer.Option("--out", parser=named_path, metavar="DIR", help="Where to write; default out/<name>.")
 ]

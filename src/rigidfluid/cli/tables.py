@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rigidfluid.core.output.history import History
     from rigidfluid.post.comparison.comparison import Comparison
     from rigidfluid.post.insertion.figures import Figures as InsertionFigures
+    from rigidfluid.post.statistics.figures import Statistics
     from rigidfluid.post.studies.results import Results
 
 MOST_BODIES = 20
@@ -66,6 +67,12 @@ def print_study(results: Results) -> None:
         if key in results.front:
             seconds, error = results.points[key]
             tell(f"on the Pareto front: {_knobs(settings)}: error {_figure(error)} in {_figure(seconds)} s")
+
+
+def print_statistics(found: Statistics) -> None:
+    """Print those figures of statistics that are no curves."""
+    for line in found.lines:
+        tell(line)
 
 
 def _knobs(settings: Mapping[str, object]) -> str:

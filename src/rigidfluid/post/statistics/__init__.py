@@ -1,0 +1,5 @@
+"""Statistics of many bodies: structure, motion and contacts, as means over a run with their errors."""
+
+from rigidfluid.post.statistics.measure import statistics
+
+__all__ = ["statistics"]

@@ -1,0 +1,90 @@
+"""All statistics of a run, and their names in a file."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from rigidfluid.post.reports.units import Units
+from rigidfluid.post.statistics.blocks import Mean
+from rigidfluid.post.statistics.contact_network import ContactNetwork
+from rigidfluid.post.statistics.motion import Diffusion
+from rigidfluid.post.statistics.pair_distribution import PairDistribution
+from rigidfluid.post.statistics.profiles import Profile
+from rigidfluid.post.statistics.samples import Samples
+from rigidfluid.post.statistics.structure_factor import StructureFactor
+
+
+class Statistics(NamedTuple):
+    """Statistics of the bodies that move: of their ``gap`` to the nearest surface the mean over bodies [length], and
+    all that the other modules of this folder measure."""
+
+    units: Units
+    samples: Samples
+    gap: Mean
+    velocity: Mean
+    fluctuations: Mean
+    pairs: PairDistribution
+    structure: StructureFactor
+    diffusion: Diffusion
+    profile: Profile
+    contacts: ContactNetwork
+
+    def to_dict(self) -> dict[str, Any]:
+        """Names, numbers and lists; each mean as its value and its standard error, None for what is unknown."""
+        samples, contacts, layers = self.samples, self.contacts, self.profile
+        return {
+            "bodies": samples.count,
+            "states": len(samples.time),
+            "from": float(samples.time[0]),
+            "to": float(samples.time[-1]),
+            "volume_fraction": samples.fraction,
+            "gap": self.gap.to_list(),
+            "velocity": self.velocity.to_list(),
+            "velocity_fluctuations": self.fluctuations.to_list(),
+            "diffusion": {
+                "coefficient": self.diffusion.coefficient.tolist(),
+                "lag": self.diffusion.lag.tolist(),
+                "mean_square_displacement": self.diffusion.displacement.tolist(),
+            },
+            "pair_distribution": {"distance": self.pairs.distance.tolist(), "g": self.pairs.value.to_list()},
+            "structure_factor": {"wavenumber": self.structure.wavenumber.tolist(), "s": self.structure.value.to_list()},
+            "profile": {
+                "across": "xyz"[layers.axis],
+                "place": layers.place.tolist(),
+                "fraction": layers.fraction.to_list(),
+                "velocity": layers.velocity.to_list(),
+            },
+            "contacts": {
+                "coordination": contacts.coordination.to_list(),
+                "touching": contacts.touching.to_list(),
+                "largest_group": contacts.largest.to_list(),
+                "stress": contacts.stress.to_list(),
+                "force_on": {name: force.to_list() for name, force in contacts.on_walls.items()},
+            },
+        }
+
+    @property
+    def lines(self) -> list[str]:
+        """Figures that are no curves, in words."""
+        samples, contacts = self.samples, self.contacts
+        lines = [
+            f"{samples.count} bodies, {samples.fraction:.3g} of the volume",
+            f"{len(samples.time)} states from {samples.time[0]:.4g} to {samples.time[-1]:.4g} [time]",
+            f"gap to the nearest surface: {_told(self.gap)} [length]",
+            f"velocity: {_told(self.velocity)} [length/time]",
+            f"fluctuations of velocity: {_told(self.fluctuations)} [length/time]",
+            f"bodies that touch a body: {_told(contacts.coordination)}",
+            f"share with a contact: {_told(contacts.touching)}",
+            f"share in the largest group: {_told(contacts.largest)}",
+        ]
+        lines += [f"force on {name}: {_told(force)} [force]" for name, force in contacts.on_walls.items()]
+        return [self.units.put_into(line) for line in lines]
+
+
+def _told(values: Mean) -> str:
+    """Value and error in words."""
+    value, error = np.atleast_1d(values.value), np.atleast_1d(values.error)
+    told = [f"{v:.3g}" + (f" ± {e:.1g}" if np.isfinite(e) else "") for v, e in zip(value, error, strict=True)]
+    return told[0] if len(told) == 1 else f"({', '.join(told)})"

@@ -1,0 +1,64 @@
+"""Statistics of a run: measured, and written as figures and a plot beside its results."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+from rigidfluid.core.output.disk import replace_text, writing
+from rigidfluid.errors import OutputError
+from rigidfluid.post.reports.results import Results, read_results
+from rigidfluid.post.reports.style import STYLE, save
+from rigidfluid.post.run_results import load_results
+from rigidfluid.post.statistics.blocks import mean
+from rigidfluid.post.statistics.contact_network import contact_network
+from rigidfluid.post.statistics.figures import Statistics
+from rigidfluid.post.statistics.motion import diffusion, mean_velocity, velocity_fluctuations
+from rigidfluid.post.statistics.pair_distribution import pair_distribution
+from rigidfluid.post.statistics.plot import statistics_plot
+from rigidfluid.post.statistics.profiles import profile
+from rigidfluid.post.statistics.samples import samples_of
+from rigidfluid.post.statistics.structure_factor import structure_factor
+
+
+def statistics(
+    folder: Path, since: float | None = None, until: float | None = None, across: str = "y"
+) -> tuple[Statistics, list[Path]]:
+    """Measure the statistics of a run, and write ``statistics.json`` and ``statistics.png`` beside its results.
+
+    They are means from the time ``since``, a third of the run if not given, to ``until``, its end; the profile is
+    ``across`` an axis. Raises OutputError for a folder that cannot be read, and for too few bodies or states.
+    """
+    results = read_results(folder, motion_only=True)
+    found = measured(results, load_results(folder).table("contacts"), since, until, across)
+    figures = Path(folder) / "statistics.json"
+    with matplotlib.rc_context(STYLE), writing(figures):
+        text = json.dumps(found.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
+        replace_text(figures, text + "\n")
+        plots = save(found.units.put_into_labels(statistics_plot(found)), Path(folder), "statistics", ["png"])
+    return found, [figures, *plots]
+
+
+def measured(
+    results: Results, contacts: Mapping[str, Any], since: float | None, until: float | None, across: str
+) -> Statistics:
+    """Statistics of these results."""
+    if across not in list(results.axes):
+        raise OutputError("--across", across, f"one of {', '.join(results.axes)}", "Name an axis.")
+    samples = samples_of(results, since, until)
+    return Statistics(
+        results.units,
+        samples,
+        mean(samples.gap.mean(axis=1)),
+        mean_velocity(samples),
+        velocity_fluctuations(samples),
+        pair_distribution(samples),
+        structure_factor(samples),
+        diffusion(samples),
+        profile(samples, results.axes.index(across)),
+        contact_network(samples, contacts),
+    )

@@ -1,0 +1,46 @@
+"""Motion of bodies: mean velocity, fluctuations, and diffusion."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.post.statistics.blocks import Mean, mean
+from rigidfluid.post.statistics.samples import Samples
+
+LONGEST = 0.5
+"""Longest lag over the time of all samples."""
+
+
+class Diffusion(NamedTuple):
+    """Mean square displacement (l, d) of bodies from their common motion after each ``lag`` (l,), and half its slope
+    over the longer half of the lags, D (d,) [length², time, length²/time]."""
+
+    lag: FloatArray
+    displacement: FloatArray
+    coefficient: FloatArray
+
+
+def mean_velocity(samples: Samples) -> Mean:
+    """Velocity of the bodies (d,), mean over all [length/time]."""
+    return mean(samples.velocity.mean(axis=1))
+
+
+def velocity_fluctuations(samples: Samples) -> Mean:
+    """Standard deviation (d,) of the bodies' velocities from their mean at each time [length/time]."""
+    return mean(samples.velocity.std(axis=1))
+
+
+def diffusion(samples: Samples) -> Diffusion:
+    """Mean square displacement and D = slope/2; states must be at even times, as they nearly are."""
+    own = samples.position - samples.position.mean(axis=1, keepdims=True)
+    lags = np.arange(1, max(2, int(LONGEST * len(own)) + 1))
+    lags = lags[lags < len(own)]
+    square = np.array([((own[lag:] - own[:-lag]) ** 2).mean(axis=(0, 1)) for lag in lags])
+    time = np.asarray(samples.interval * lags, dtype=float)
+    late = slice(len(lags) // 2, None)
+    away = time[late] - time[late].mean()
+    slope = away @ square[late] / max(float(away @ away), np.finfo(float).tiny)
+    return Diffusion(time, square, 0.5 * np.asarray(slope, dtype=float))

@@ -1,0 +1,64 @@
+"""Pair distribution: how many bodies are at a distance of one, over how many would be if places were independent."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial.distance import pdist
+
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.post.statistics.blocks import Mean, mean
+from rigidfluid.post.statistics.samples import Samples
+
+BINS = 60
+_ANGLES = 64
+_RADII = 4
+"""Nodes of the quadrature over each angle, and across a shell."""
+
+
+class PairDistribution(NamedTuple):
+    """g (b,) at ``distance`` (b,) between centres [length]."""
+
+    distance: FloatArray
+    value: Mean
+
+
+def pair_distribution(samples: Samples) -> PairDistribution:
+    """g(r) = pairs at r / those of places that are independent and even in the box that centres may be in.
+
+    The box is the domain less a mean radius at each side, so that walls change nothing for independent places. The
+    greatest distance is half of its least side.
+    """
+    sides = np.maximum(samples.upper - samples.lower - 2.0 * samples.radius.mean(), 1e-9 * samples.radius.mean())
+    edges = np.linspace(0.0, max(0.5 * sides.min(), 4.0 * samples.radius.mean()), BINS + 1)
+    pairs = 0.5 * samples.count * (samples.count - 1)
+    expected = pairs * shell_shares(edges, sides)
+    counted = np.array([np.histogram(pdist(position), edges)[0] for position in samples.position])
+    ratio = np.divide(counted, expected, out=np.zeros(counted.shape), where=expected > 0.0)
+    return PairDistribution(0.5 * (edges[1:] + edges[:-1]), mean(ratio))
+
+
+def shell_shares(edges: FloatArray, sides: FloatArray) -> FloatArray:
+    """Probability (b,) that two independent places in a box with these ``sides`` (d,) are between two ``edges`` apart.
+
+    The difference u of two places has the density ∏ (L - |u|)/L².
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(_ANGLES)
+    angle, part = 0.25 * np.pi * (nodes + 1.0), 0.25 * np.pi * weights
+    if len(sides) == 2:
+        directions, parts = np.stack([np.cos(angle), np.sin(angle)]), 4.0 * part
+    else:
+        height, heights = 0.5 * (nodes + 1.0), 0.5 * weights
+        across = np.sqrt(1.0 - height**2)
+        flat = np.stack([np.outer(np.cos(angle), across), np.outer(np.sin(angle), across)])
+        directions = np.concatenate([flat, np.broadcast_to(height, flat[:1].shape)]).reshape(3, -1)
+        parts = 8.0 * np.outer(part, heights).ravel()
+    half, place = 0.5 * np.diff(edges), 0.5 * (edges[1:] + edges[:-1])
+    few, portions = np.polynomial.legendre.leggauss(_RADII)
+    radius = place[:, None] + half[:, None] * few
+    density = np.ones((*radius.shape, directions.shape[1]))
+    for side, direction in zip(sides, directions, strict=True):
+        density *= np.maximum(side - radius[..., None] * direction, 0.0) / side**2
+    shells = (density @ parts) * radius ** (len(sides) - 1)
+    return np.asarray(half * (shells @ portions))

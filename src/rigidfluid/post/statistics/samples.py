@@ -1,0 +1,105 @@
+"""Bodies of a run at even times."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.system import System
+from rigidfluid.errors import OutputError
+from rigidfluid.post.reports.results import Results
+
+SAMPLES = 200
+"""Most states that are looked at."""
+
+LEAST = 2
+"""Fewest bodies and states that have statistics."""
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Bodies that move, n of them, in s states.
+
+    ``step`` (s,) numbers of the states; ``time`` (s,) [time]; ``position`` and ``velocity`` (s, n, d) [length,
+    length/time]; ``gap`` (s, n), of each body to its nearest surface [length]; ``radius`` (n,) of balls of the same
+    volume [length]; ``name`` of each body; ``lower`` and ``upper`` (d,), corners of the domain [length]; ``volume`` of
+    the domain with bodies [length^d].
+    """
+
+    step: FloatArray
+    time: FloatArray
+    position: FloatArray
+    velocity: FloatArray
+    gap: FloatArray
+    radius: FloatArray
+    name: tuple[str, ...]
+    lower: FloatArray
+    upper: FloatArray
+    volume: float
+
+    @property
+    def count(self) -> int:
+        """Number of bodies n."""
+        return len(self.radius)
+
+    @property
+    def dimension(self) -> int:
+        """Number of space dimensions d."""
+        return len(self.lower)
+
+    @property
+    def interval(self) -> float:
+        """Time between states [time]."""
+        return float((self.time[-1] - self.time[0]) / (len(self.time) - 1))
+
+    @property
+    def body_volume(self) -> FloatArray:
+        """Volume of each body (n,) [length^d]."""
+        return np.asarray(np.pi * self.radius**2 if self.dimension == 2 else 4.0 / 3.0 * np.pi * self.radius**3)
+
+    @property
+    def fraction(self) -> float:
+        """Volume of the bodies over that of the domain [1]."""
+        return float(self.body_volume.sum() / self.volume)
+
+
+def samples_of(results: Results, since: float | None, until: float | None) -> Samples:
+    """Samples of a run from one time to another; from a third of it on if not given, when most starts are forgotten.
+
+    Raises OutputError if there are too few states or bodies.
+    """
+    start, end = float(results.time[0]), float(results.time[-1])
+    since, until = start + (end - start) / 3.0 if since is None else since, end if until is None else until
+    if not start <= since < until:
+        allowed, remedy = f"two times from {start:g} to {end:g}, in order", "Correct --since or --until."
+        raise OutputError("statistics, times", f"{since:g} to {until:g}", allowed, remedy)
+    inside = int(np.sum((results.time >= since) & (results.time <= until)))
+    wanted = np.linspace(since, min(until, end), max(LEAST, min(SAMPLES, inside)))
+    rows = np.unique([results.state_at(time) for time in wanted])
+    moving = _moving(results.system)
+    if len(rows) < LEAST or len(moving) < LEAST:
+        found = f"{len(rows)} states and {len(moving)} bodies that move"
+        remedy = "Choose a longer time, or a run of more bodies."
+        raise OutputError("statistics", found, f"at least {LEAST} of each", remedy)
+    system = results.system
+    volume = np.array([system.bodies[body].volume for body in moving])
+    lower, upper = system.domain.extent
+    return Samples(
+        step=results.bodies["step"][rows, 0],
+        time=results.time[rows],
+        position=results.quantity("position")[rows][:, moving],
+        velocity=results.quantity("velocity")[rows][:, moving],
+        gap=results.bodies["gap"][rows][:, moving],
+        radius=np.sqrt(volume / np.pi) if results.system.dimension == 2 else np.cbrt(0.75 * volume / np.pi),
+        name=tuple(results.names[body] for body in moving),
+        lower=np.asarray(lower),
+        upper=np.asarray(upper),
+        volume=float(system.domain.volume),
+    )
+
+
+def _moving(system: System) -> list[int]:
+    """Numbers of the bodies that may go where forces push them."""
+    return [body for body in range(len(system.bodies)) if not system.prescribed[body]]

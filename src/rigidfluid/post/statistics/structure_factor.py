@@ -1,0 +1,45 @@
+"""Structure factor: how much waves of each length are in the places of bodies."""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.post.statistics.blocks import Mean, mean
+from rigidfluid.post.statistics.samples import Samples
+
+WAVES = 12
+"""Most waves along a side of the domain."""
+
+
+class StructureFactor(NamedTuple):
+    """S (w,) at ``wavenumber`` (w,) [1/length]."""
+
+    wavenumber: FloatArray
+    value: Mean
+
+
+def structure_factor(samples: Samples) -> StructureFactor:
+    """S(k) = |Σ exp(i k·x)|²/n, mean over waves of about one length, k = 2π (m₁/L₁, …) in the domain's box.
+
+    It is not corrected for walls, which add to waves as long as the box.
+    """
+    sides = samples.upper - samples.lower
+    every = product(range(-WAVES, WAVES + 1), repeat=samples.dimension)
+    waves = 2.0 * np.pi * np.array([one for one in every if one > (0,) * samples.dimension]) / sides
+    unit = 2.0 * np.pi / sides.max()
+    band = np.rint(np.linalg.norm(waves, axis=1) / unit).astype(int)
+    waves, band = waves[band <= WAVES], band[band <= WAVES]
+    count = np.bincount(band)
+    power = np.array([_power(waves, position) for position in samples.position])
+    sums = np.array([np.bincount(band, one) for one in power])
+    kept = np.flatnonzero(count)
+    return StructureFactor(unit * kept, mean(sums[:, kept] / count[kept]))
+
+
+def _power(waves: FloatArray, position: FloatArray) -> FloatArray:
+    """|Σ exp(i k·x)|²/n of each wave (w,)."""
+    return np.asarray(np.abs(np.exp(1j * (waves @ position.T)).sum(axis=1)) ** 2 / len(position))

@@ -1,0 +1,143 @@
+"""Statistics against places and motions for which they are known."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from dry_scenes import ball, dry_scene
+
+import rigidfluid
+from rigidfluid.errors import OutputError
+from rigidfluid.post.statistics import statistics
+from rigidfluid.post.statistics.blocks import mean
+from rigidfluid.post.statistics.contact_network import contact_network
+from rigidfluid.post.statistics.motion import diffusion, velocity_fluctuations
+from rigidfluid.post.statistics.pair_distribution import pair_distribution, shell_shares
+from rigidfluid.post.statistics.profiles import profile
+from rigidfluid.post.statistics.samples import Samples
+from rigidfluid.post.statistics.structure_factor import structure_factor
+
+
+def made(position: np.ndarray, velocity: np.ndarray | None = None, radius: float = 0.01) -> Samples:
+    """Balls in a unit box at places (s, n, d), a time of .1 from state to state."""
+    states, count, dimension = position.shape
+    return Samples(
+        step=np.arange(states, dtype=float),
+        time=0.1 * np.arange(states),
+        position=position,
+        velocity=np.zeros_like(position) if velocity is None else velocity,
+        gap=np.full((states, count), 0.1),
+        radius=np.full(count, radius),
+        name=tuple(f"ball{number}" for number in range(count)),
+        lower=np.zeros(dimension),
+        upper=np.ones(dimension),
+        volume=1.0,
+    )
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_independent_places_have_no_structure(dimension: int) -> None:
+    random = np.random.default_rng(7)
+    samples = made(0.01 + 0.98 * random.random((200, 60, dimension)))
+    pairs, waves = pair_distribution(samples), structure_factor(samples)
+    many = pairs.distance > 0.2
+    np.testing.assert_allclose(pairs.value.value[many], 1.0, atol=0.1)
+    assert np.mean(np.abs(pairs.value.value[many] - 1.0) < 2.0 * pairs.value.error[many]) > 0.85
+    short = waves.wavenumber > 30.0
+    np.testing.assert_allclose(waves.value.value[short], 1.0, atol=0.1)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_shells_of_the_box_are_those_of_random_places(dimension: int) -> None:
+    random = np.random.default_rng(7)
+    sides = np.array([1.0, 0.7, 1.3])[:dimension]
+    edges = np.linspace(0.0, 0.35, 8)
+    apart = np.linalg.norm(np.diff(random.random((400_000, 2, dimension)) * sides, axis=1)[:, 0], axis=1)
+    counted = np.histogram(apart, edges)[0] / len(apart)
+    np.testing.assert_allclose(shell_shares(edges, sides), counted, rtol=0.1, atol=3e-4)
+
+
+def test_a_lattice_scatters_waves_of_its_spacing_alone() -> None:
+    grid = (np.stack(np.meshgrid(np.arange(5), np.arange(5)), axis=-1).reshape(1, -1, 2) + 0.5) / 5.0
+    waves = structure_factor(made(np.repeat(grid, 2, axis=0)))
+    strong = waves.wavenumber[waves.value.value > 1.0]
+    np.testing.assert_allclose(strong / (2.0 * np.pi), [5.0, 7.0, 10.0, 11.0], atol=0.1)
+
+
+def test_errors_of_correlated_values_are_those_of_what_is_independent() -> None:
+    random = np.random.default_rng(7)
+    values = np.repeat(random.normal(size=1024), 8)
+    found = mean(values)
+    assert found.error == pytest.approx(1.0 / np.sqrt(1024.0), rel=0.35)
+    assert np.isnan(mean(values[:4]).error)
+
+
+def test_a_random_walk_diffuses_and_common_motion_does_not() -> None:
+    random = np.random.default_rng(7)
+    steps = random.normal(scale=[0.02, 0.01], size=(400, 300, 2))
+    drift = np.linspace(0.0, 5.0, 400)[:, None, None]
+    found = diffusion(made(np.cumsum(steps, axis=0) + drift))
+    np.testing.assert_allclose(found.coefficient, [0.02**2 / 0.2, 0.01**2 / 0.2], rtol=0.2)
+    spread = velocity_fluctuations(made(steps, steps + 3.0))
+    np.testing.assert_allclose(spread.value, [0.02, 0.01], rtol=0.02)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_layers_share_a_body_by_its_volume(dimension: int) -> None:
+    place = np.full((16, 2, dimension), 0.5)
+    place[:, 1, 1] = 0.21
+    velocity = np.zeros_like(place)
+    velocity[:, 0, 0], velocity[:, 1, 0] = 2.0, -1.0
+    found = profile(made(place, velocity, radius=0.03), 1)
+    volume = np.pi * 0.03**2 if dimension == 2 else 4.0 / 3.0 * np.pi * 0.03**3
+    assert found.fraction.value.sum() / 20.0 == pytest.approx(2.0 * volume)
+    half = found.fraction.value[[9, 10]] / 20.0
+    np.testing.assert_allclose(half, 0.5 * volume)
+    np.testing.assert_allclose(found.velocity.value[[3, 4, 9, 10], 0], [-1.0, -1.0, 2.0, 2.0])
+    assert np.isnan(found.velocity.value[0, 0])
+
+
+def test_contacts_make_groups_and_press() -> None:
+    place = np.array([[0.1, 0.5], [0.2, 0.5], [0.3, 0.5], [0.8, 0.8]])
+    samples = made(np.repeat(place[None], 8, axis=0), radius=0.05)
+    rows = [("ball0", "ball1", -4.0, 0.0), ("ball1", "ball2", -4.0, 0.0), ("ball0", "left", 4.0, 0.0)]
+    a, b, fx, fy = (np.array([row[column] for row in rows] * 8) for column in range(4))
+    step = np.repeat(np.arange(8), 3)
+    found = contact_network(samples, {"step": step, "a": a, "b": b, "fx": fx, "fy": fy})
+    assert found.coordination.value == pytest.approx(4 / 4)
+    assert found.touching.value == pytest.approx(3 / 4)
+    assert found.largest.value == pytest.approx(3 / 4)
+    np.testing.assert_allclose(found.stress.value, [[-0.8, 0.0], [0.0, 0.0]])
+    np.testing.assert_allclose(found.on_walls["left"].value, [-4.0, 0.0])
+
+
+def test_of_a_run_they_are_written_beside_its_results(tmp_path: Path) -> None:
+    law = {"law": "spring-dashpot", "range": 0.02, "stiffness": 200.0}
+    balls = [ball([0.2 + 0.25 * (n % 3), 0.3 + 0.3 * (n // 3)], [1.0 - 0.3 * n, 0.4 * n - 1.0]) for n in range(6)]
+    scene = dry_scene(law, *balls, end=0.6, step=5e-3)
+    rigidfluid.run(scene, tmp_path)
+    found, files = statistics(tmp_path, since=0.1)
+    assert [file.name for file in files] == ["statistics.json", "statistics.png"]
+    data = json.loads(files[0].read_text())
+    assert data["bodies"] == 6
+    assert data["volume_fraction"] == pytest.approx(6 * np.pi * 0.01)
+    assert data["from"] == pytest.approx(0.1)
+    assert data["contacts"]["touching"][0] > 0.0
+    assert set(data["contacts"]["force_on"]) <= {"left", "right", "bottom", "top"}
+    assert found.to_dict() == data
+    for keys, told in (
+        ({"across": "z"}, "--across"),
+        ({"since": 0.5, "until": 0.2}, "times"),
+        ({"since": 9.0}, "times"),
+    ):
+        with pytest.raises(OutputError, match=told):
+            statistics(tmp_path, **keys)  # type: ignore[arg-type]
+
+
+def test_a_single_body_has_none(tmp_path: Path) -> None:
+    rigidfluid.run(dry_scene({}, ball([0.5, 0.5], [0.1, 0.0]), end=0.02, step=1e-2), tmp_path)
+    with pytest.raises(OutputError, match="1 bodies that move"):
+        statistics(tmp_path)
