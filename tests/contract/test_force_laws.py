@@ -9,6 +9,7 @@ from rigidfluid.core.contact.laws.friction import Friction, Rubbing
 from rigidfluid.core.contact.laws.repulsion import Repulsion
 from rigidfluid.core.contact.laws.restitution import Restitution
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.mechanics.coulomb import TurningFriction
 from rigidfluid.core.model.force_law import Between, ForceLaw, Overlap, Sign
 from rigidfluid.core.model.interactions import Interaction, SumOfLaws
 from rigidfluid.core.model.part import PartOptions
@@ -59,8 +60,13 @@ class TestFriction(ForceLawContract):
         return request.param(request.param.Options(epsilon=5e-6), RANGE)
 
     @pytest.fixture(params=[None, 3e3], ids=["stiffness of the law", "given stiffness"])
-    def law(self, repulsion: ForceLaw, request: pytest.FixtureRequest) -> ForceLaw:
-        return Friction(Restitution(repulsion, 0.5), Rubbing(0.4, request.param, 1.0, 0.3 * RANGE))
+    def stiffness(self, request: pytest.FixtureRequest) -> float | None:
+        return request.param
+
+    @pytest.fixture(params=[0.0, 0.1], ids=["sliding", "rolling"])
+    def law(self, repulsion: ForceLaw, stiffness: float | None, request: pytest.FixtureRequest) -> ForceLaw:
+        turning = TurningFriction(request.param, 0.5 * request.param)
+        return Friction(Restitution(repulsion, 0.5), Rubbing(0.4, stiffness, 1.0, 0.3 * RANGE, turning))
 
 
 class TestSpringDashpot(ForceLawContract):

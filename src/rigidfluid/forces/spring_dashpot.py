@@ -8,7 +8,13 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.mechanics.coulomb import dashpot_coefficient, held_displacement, sliding_friction
+from rigidfluid.core.mechanics.coulomb import (
+    Bedding,
+    TurningFriction,
+    dashpot_coefficient,
+    held_displacement,
+    sliding_friction,
+)
 from rigidfluid.core.model.contacts import normal_part, tangential_part
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.part import PartOptions
@@ -82,8 +88,7 @@ class SpringDashpotLaw(ForceLaw):
         C = -R (k_t ζ + x γ R w),   |C across n| ≤ μ_r R |F_n|,   |C along n| ≤ μ_o R |F_n|
 
     with the effective radius R = r_a r_b/(r_a + r_b), r_a at a flat wall, and ζ = ∫ R w dt [length], shortened as ξ is.
-    The dashpot is limited to the bound before the spring, which in fast turning it would else stretch backwards. The
-    energy is k_t ζ²/2. In 2D bodies roll and do not twist.
+    The energy is k_t ζ²/2. In 2D bodies roll and do not twist.
 
     Notes
     -----
@@ -104,9 +109,9 @@ class SpringDashpotLaw(ForceLaw):
         super().__init__(options, range, loads)
         self.friction = self.options.friction
         self.sticking = self.options.tangential_stiffness is not None
-        keys = [key for key in ("rolling_friction", "twisting_friction") if getattr(self.options, key) > 0.0]
-        self.rolling = self.couples = bool(keys)
-        self.round_option = keys[0] if keys else ""
+        self._turning = TurningFriction(self.options.rolling_friction, self.options.twisting_friction)
+        self.rolling = self.couples = bool(self._turning.keys)
+        self.round_option = self._turning.keys[0] if self.rolling else ""
 
     def force(self, contacts: Contacts) -> FloatArray:
         """k δ along the normal on ``body_a``, (m, d) [force]."""
@@ -143,33 +148,16 @@ class SpringDashpotLaw(ForceLaw):
 
     def couple(self, contacts: Contacts, motion: Motion) -> FloatArray:
         """-x γ R² w of what friction resists, at most what it holds, on ``body_a``, (m, k) [force·length]."""
-        radius, none = contacts.effective_radius[:, None], np.zeros_like(motion.angular_velocity)
-        damped = [force for _, force in self._turning_dashpots(contacts, motion)]
-        return np.asarray(-radius * sum(damped, none))
+        return self._turning.couple(contacts, motion, self._bedding(contacts, motion))
 
     def held_turning(self, contacts: Contacts, motion: Motion, turning: FloatArray) -> FloatArray:
         """ζ with |k_t ζ + x γ R w| ≤ μ |F_n| along the normal and across it, with its own μ each, (m, k) [length]."""
-        stiffness, resisted = self.tangential_stiffness(contacts), self._resisted(contacts, turning)
-        parts = zip(resisted, self._turning_dashpots(contacts, motion), strict=True)
-        held = [held_displacement(stiffness, damped, most, part) for (_, part), (most, damped) in parts]
-        return np.asarray(sum(held, np.zeros_like(turning)))
+        return self._turning.held(contacts, motion, self._bedding(contacts, motion), turning)
 
-    def _turning_dashpots(self, contacts: Contacts, motion: Motion) -> list[tuple[FloatArray, FloatArray]]:
-        """Bound μ |F_n| (m,) [force] of each part of the turning that friction resists, and x γ R w (m, k) up to it
-        [force]."""
+    def _bedding(self, contacts: Contacts, motion: Motion) -> Bedding:
         coefficient, speed, _ = self._dashpot(contacts, motion)
-        damping = self.options.tangential_damping * coefficient * contacts.effective_radius
-        normal_force = self._normal_force(contacts, coefficient * speed)
-        bounds = [(mu * normal_force, spin) for mu, spin in self._resisted(contacts, motion.angular_velocity)]
-        return [(most, sliding_friction(damping, most, spin)) for most, spin in bounds]
-
-    def _resisted(self, contacts: Contacts, turning: FloatArray) -> list[tuple[float, FloatArray]]:
-        """Parts of ``turning`` (m, k) that friction resists, each with its coefficient: across and along the normal."""
-        twisting = np.zeros_like(turning)
-        if turning.shape[1] == 3:
-            twisting = np.sum(turning * contacts.normal, axis=1)[:, None] * contacts.normal
-        parts = (self.options.rolling_friction, turning - twisting), (self.options.twisting_friction, twisting)
-        return [(coefficient, part) for coefficient, part in parts if coefficient > 0.0]
+        along = self.options.tangential_damping * coefficient
+        return Bedding(self.tangential_stiffness(contacts), along, self._normal_force(contacts, coefficient * speed))
 
     def _dashpot(self, contacts: Contacts, motion: Motion) -> tuple[FloatArray, FloatArray, FloatArray]:
         """γ (m,) [force·time/length], and the relative velocity along the normal (m,) and across it (m, d)."""

@@ -1,4 +1,5 @@
-"""Rows of contacts: a choice of them, several parts in one, sorted, their middles, and parts of vectors there."""
+"""Rows of contacts: a choice of them, several parts in one, sorted, their middles and radii, and parts of vectors
+there."""
 
 from __future__ import annotations
 
@@ -39,3 +40,8 @@ def normal_part(vectors: FloatArray, contacts: Contacts) -> FloatArray:
 def tangential_part(vectors: FloatArray, contacts: Contacts) -> FloatArray:
     """Parts of ``vectors`` (m, d) along the surfaces, (m, d)."""
     return np.asarray(vectors - normal_part(vectors, contacts)[:, None] * contacts.normal)
+
+
+def turning_radius(contacts: Contacts) -> FloatArray:
+    """Effective radii, over which springs resist turning, (m, 1), zero where not known [length]."""
+    return np.where(np.isnan(contacts.effective_radius), 0.0, contacts.effective_radius)[:, None]

@@ -132,5 +132,6 @@ class ForceLaw(Part):
     @gives(rows(lambda _, contacts, motion, turning: turning.shape, shorter=True))
     def held_turning(self, contacts: Contacts, motion: Motion, turning: FloatArray) -> FloatArray:
         """Displacement ζ that friction of rolling and twisting holds of ``turning``, (m, k) each, the relative angle
-        times the effective radius R [length]; the couple of the springs is -R k ζ on ``body_a``."""
+        times the effective radius R [length]; the couple of the springs is -R k ζ on ``body_a``. The parts of ζ across
+        the normal and along it do not depend on each other."""
         return np.zeros_like(turning)

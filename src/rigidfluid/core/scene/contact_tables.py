@@ -40,6 +40,18 @@ _TANGENTIAL_DAMPING = Field(
     ge=0,
     description="Ratio of the dashpot's coefficient along the surfaces to that by `restitution`, 1 if not given [1]",
 )
+_ROLLING_FRICTION = Field(
+    default=None,
+    ge=0,
+    description="Coefficient of rolling friction μ_r of balls, beside `friction`: the largest couple is μ_r R F_n, "
+    "0 if not given [1]",
+)
+_TWISTING_FRICTION = Field(
+    default=None,
+    ge=0,
+    description="Coefficient of twisting friction μ_o of balls, beside `friction`: the largest couple is μ_o R F_n, "
+    "0 if not given [1]",
+)
 
 
 class ContactTable(OpenTable):
@@ -59,6 +71,8 @@ class ContactTable(OpenTable):
     friction: float | None = _FRICTION
     tangential_stiffness: Positive | None = _TANGENTIAL_STIFFNESS
     tangential_damping: float | None = _TANGENTIAL_DAMPING
+    rolling_friction: float | None = _ROLLING_FRICTION
+    twisting_friction: float | None = _TWISTING_FRICTION
     impact_speed: float | None = Field(
         default=None,
         ge=0,
@@ -89,6 +103,8 @@ class InteractionTable(OpenTable):
     friction: float | None = _FRICTION
     tangential_stiffness: Positive | None = _TANGENTIAL_STIFFNESS
     tangential_damping: float | None = _TANGENTIAL_DAMPING
+    rolling_friction: float | None = _ROLLING_FRICTION
+    twisting_friction: float | None = _TWISTING_FRICTION
     between: Literal["all", "walls", "pairs"] = Field(
         default="all", description="Contacts at `walls`, of `pairs` of bodies, or both"
     )

@@ -13,6 +13,7 @@ from rigidfluid.core.contact.laws.friction import Friction, Rubbing
 from rigidfluid.core.contact.laws.restitution import Restitution
 from rigidfluid.core.contact.laws.rough_film import RoughFilm
 from rigidfluid.core.geometry.piece import Piece, all_names
+from rigidfluid.core.mechanics.coulomb import TurningFriction
 from rigidfluid.core.model.force_law import Between, ForceLaw
 from rigidfluid.core.model.interactions import Interaction, acting_together
 from rigidfluid.core.model.selected import Selected
@@ -27,7 +28,10 @@ if TYPE_CHECKING:
 SMALLEST_GAP = 0.25
 """The smallest gap wanted over the range of the law, if none is given."""
 
-MAY_BE_OWN = "restitution", "friction", "tangential_stiffness", "tangential_damping"
+MAY_BE_OWN = (
+    *("restitution", "friction", "tangential_stiffness", "tangential_damping"),
+    *("rolling_friction", "twisting_friction"),
+)
 """Keys that every law may have, and that some have as options of their own."""
 
 
@@ -55,6 +59,10 @@ class ContactLaw:
         Stiffness of springs along the surfaces; 2/7 of the law's at the smallest gap if not given [force/length].
     tangential_damping : float, optional
         Ratio of the dashpots' coefficient along the surfaces to the one by the restitution; 1 if not given [1].
+    rolling_friction : float, optional
+        Coefficient of friction that resists rolling, of balls; none if not given [1].
+    twisting_friction : float, optional
+        Coefficient of friction that resists turning about the normal, of balls; none if not given [1].
     between : str
         Contacts at `walls`, of `pairs` of bodies, or `all`.
     names : sequence of str
@@ -74,6 +82,8 @@ class ContactLaw:
     friction: Annotated[float, Field(ge=0)] | None = None
     tangential_stiffness: Positive | None = None
     tangential_damping: Annotated[float, Field(ge=0)] | None = None
+    rolling_friction: Annotated[float, Field(ge=0)] | None = None
+    twisting_friction: Annotated[float, Field(ge=0)] | None = None
     between: Between = "all"
     names: Annotated[tuple[str, ...], AnyRow, Field(max_length=2)] = ()
     field: str | None = None
@@ -124,7 +134,8 @@ class ContactLaw:
             raise SceneError(f"{self.field}.{along[0]}", keys[along[0]], allowed, "Remove it, or choose another law.")
         if keys.get("friction"):
             damping = 1.0 if self.tangential_damping is None else self.tangential_damping
-            return Rubbing(keys["friction"], self.tangential_stiffness, damping, self.aim)
+            turning = TurningFriction(self.rolling_friction or 0.0, self.twisting_friction or 0.0)
+            return Rubbing(keys["friction"], self.tangential_stiffness, damping, self.aim, turning)
         if along:
             remedy = "Remove it, or add `friction`."
             raise SceneError(f"{self.field}.{along[0]}", keys[along[0]], "`friction` above 0 beside it", remedy)

@@ -10,7 +10,7 @@ from rigidfluid.core.contact.laws.restitution import Restitution
 from rigidfluid.core.contact.laws.rough_film import RoughFilm
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.interactions import Interaction
-from rigidfluid.core.model.wrapped_law import layer
+from rigidfluid.core.model.wrapped_law import bare, layer
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
@@ -25,7 +25,6 @@ def check_interactions(
     """Refuse, with SceneError, laws that would hold the same displacement along surfaces, count a film twice or need
     substeps, and those with an option that the shapes of their ``bodies`` or ``walls`` do not allow."""
     _check_sticking(interactions)
-    _check_rolling(interactions, stepping)
     _check_sliding(interactions, stepping)
     _check_films(interactions)
     for interaction in interactions:
@@ -37,12 +36,12 @@ def _check_round(interaction: Interaction, bodies: Sequence[Body], walls: Sequen
     """Refuse the option of a law for round surfaces where it meets others."""
     radius = dict(enumerate(body.radius for body in bodies)) | {wall.surface: wall.shape.radius for wall in walls}
     if any(radius.get(surface) is None for surface in _surfaces_met(interaction, len(bodies), walls)):
-        option = interaction.law.round_option
-        value, field = getattr(interaction.law.options, option), f"{interaction.field}.{option}"
+        law, option = interaction.law, interaction.law.round_option
+        value = getattr(law, option) if hasattr(law, option) else getattr(law.options, option)
         given, off = ("true", "false") if value is True else (value, "0")
-        found = f"{given} for {interaction.law.name!r} with surfaces that are neither round nor flat"
+        found = f"{given} for {bare(law).name!r} with surfaces that are neither round nor flat"
         remedy = f"Set it to {off}, or keep the law to other contacts by `between` or `names`."
-        raise SceneError(field, found, "balls, and flat or round walls", remedy)
+        raise SceneError(f"{interaction.field}.{option}", found, "balls, and flat or round walls", remedy)
 
 
 def _surfaces_met(interaction: Interaction, bodies: int, walls: Sequence[Wall]) -> tuple[int, ...]:
@@ -65,14 +64,6 @@ def _check_sticking(interactions: Sequence[Interaction]) -> None:
             found, allowed = f"a spring along surfaces that {one.field} has one along too", "one such law in a contact"
             remedy = "Keep them to different contacts by `between` or `names`."
             raise SceneError(f"{other.field}.law", found, allowed, remedy)
-
-
-def _check_rolling(interactions: Sequence[Interaction], stepping: ContactStepping) -> None:
-    """Refuse springs that resist turning in implicit steps, which take couples from the iteration before."""
-    if stepping.implicit and any(interaction.law.rolling for interaction in interactions):
-        found, allowed = "'implicit' with springs that resist rolling or twisting", "'substeps'"
-        remedy = "Leave it out, or remove `rolling_friction` and `twisting_friction`."
-        raise SceneError("contact.stepping", found, allowed, remedy)
 
 
 def _check_sliding(interactions: Sequence[Interaction], stepping: ContactStepping) -> None:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rigidfluid.core.contact.pairs.carried_springs import carried_displacement, carried_springs, springs_at, transported
+from rigidfluid.core.contact.pairs.carried_springs import carried_springs, springs_at, transported
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.types import Contacts, Pose
@@ -15,6 +15,10 @@ POSE = Pose(np.array([[0.0, 0.0], [3.0, 0.0]]), np.array([[0.3], [-0.2]]))
 
 def unit(vectors):
     return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+
+def carried_displacement(springs, contacts, pose):
+    return carried_springs(springs, contacts, pose)[0]
 
 
 def corners(points, pose=POSE, body=0, wall=2):

@@ -1,4 +1,4 @@
-"""Friction that any law may have: static, sliding, and in impacts, with the law's own stiffness along surfaces."""
+"""Friction that any law may have: static, sliding, rolling, and in impacts, by the law's own stiffness."""
 
 import numpy as np
 import pytest
@@ -10,6 +10,7 @@ from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
 from rigidfluid.core.contact.laws.friction import Friction, Rubbing
 from rigidfluid.core.contact.laws.repulsion import RepulsionOptions
+from rigidfluid.core.mechanics.coulomb import TurningFriction
 from rigidfluid.errors import SceneError
 from rigidfluid.forces.normal import NormalLaw
 
@@ -85,6 +86,8 @@ def test_without_friction_a_law_has_no_memory():
         ({"friction": None, "tangential_stiffness": 3.0}, "tangential_stiffness"),
         ({"friction": 0.0, "tangential_damping": 0.5}, "tangential_damping"),
         ({"tangential_stiffness": 0.0}, "tangential_stiffness"),
+        ({"friction": None, "rolling_friction": 0.1}, "rolling_friction"),
+        ({"twisting_friction": -0.1}, "twisting_friction"),
     ],
 )
 def test_numbers_that_make_no_friction_are_refused(keys, field):
@@ -115,5 +118,36 @@ def test_friction_is_refused_where_it_would_count_twice_or_be_zero(declared, fie
     for name, value in declared.items():
         setattr(law, name, value)
     with pytest.raises(SceneError) as caught:
-        Friction(law, Rubbing(0.3, None, 1.0, 0.25 * RANGE))
+        Friction(law, Rubbing(0.3, None, 1.0, 0.25 * RANGE, TurningFriction(0.0, 0.0)))
     assert caught.value.subject == f"contact.{field}"
+
+
+@pytest.mark.parametrize("keys", [{}, {"stepping": "implicit"}], ids=["substeps", "implicit"])
+@pytest.mark.parametrize("law", LAWS)
+def test_rolling_and_twisting_are_resisted_by_any_law(law, keys):
+    """A ball at rest on the floor rolls and spins, slowed by μ_r R F_n and μ_o R F_n."""
+    contact = RUBBING | {"law": law, "impact_speed": 0.3, "rolling_friction": 0.1, "twisting_friction": 0.05} | keys
+    gravity, speed, spin, time = [0.0, 0.0, -GRAVITY], 0.4, 10.0, 0.1
+
+    def ball_after(end, height, **motion):
+        return run_to_end(
+            dry_scene(
+                contact, ball([0.3, 0.5, height], **motion), end=end, step=2e-3, gravity=gravity, upper=[3.0, 1.0, 1.0]
+            )
+        )
+
+    height = ball_after(0.5, RADIUS + 0.5 * RANGE, velocity=[0.0, 0.0, 0.0]).pose.position[0, 2]
+    arm = 0.5 * (height + RADIUS)
+    state = ball_after(time, height, velocity=[speed, 0.0, 0.0], angular_velocity=[0.0, speed / arm, spin])
+    slowing = 0.1 * RADIUS * GRAVITY / arm / (1.0 + 0.4 * (RADIUS / arm) ** 2)
+    assert speed - state.twist.velocity[0, 0] == pytest.approx(time * slowing, rel=0.03)
+    slowed = 0.05 * GRAVITY / (0.4 * RADIUS)
+    assert spin - state.twist.angular_velocity[0, 2] == pytest.approx(time * slowed, rel=0.03)
+    assert abs(state.ledger.residual) < 1e-4 * state.ledger.initial
+
+
+def test_rolling_friction_is_for_round_surfaces():
+    block = {"type": "ellipsoid", "semi_axes": [0.1, 0.05], "density": 1.0, "position": [0.5, 0.5]}
+    contact = RUBBING | {"law": "normal", "impact_speed": 1.0, "rolling_friction": 0.1}
+    with pytest.raises(SceneError, match=r"rolling_friction: found 0\.1 for 'normal' .*Set it to 0, or"):
+        build_system(dry_scene(contact, block, end=0.1, step=1e-2))

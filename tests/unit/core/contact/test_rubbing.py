@@ -14,6 +14,7 @@ RANGE, STIFFNESS, FRICTION, TANGENTIAL, SIZE = 0.02, 400.0, 0.4, 900.0, 3e-3
 LAW = SpringDashpotLaw(
     SpringDashpotOptions(stiffness=STIFFNESS, damping=2.0, friction=FRICTION, tangential_stiffness=TANGENTIAL), RANGE
 )
+ROLLING = SpringDashpotLaw(LAW.options.model_copy(update={"rolling_friction": 0.3, "twisting_friction": 0.2}), RANGE)
 COUNT = 300
 
 
@@ -90,6 +91,52 @@ def test_slopes_are_those_of_the_force(dimension):
     np.testing.assert_allclose(slope, expected, rtol=1e-4, atol=1e-4 * np.abs(expected).max())
 
 
+def turning_parts(contacts, vectors):
+    """Rolling and twisting parts of ``vectors`` (m, k)."""
+    twisting = vectors - along(contacts, vectors) if vectors.shape[1] == 3 else 0.0 * vectors
+    return vectors - twisting, twisting
+
+
+@pytest.mark.parametrize("secant", [False, True])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_springs_that_resist_turning_lose_energy_each_within_its_bound(dimension, secant):
+    random, radius = np.random.default_rng(3), 0.5
+    middle = contacts_of(dimension, random)
+    spins = random.normal(size=(3, COUNT, 1 if dimension == 2 else 3))
+    held = np.hstack([along(middle, random.normal(scale=5e-3, size=middle.normal.shape)), 5e-3 * spins[0]])
+    motion = Motion(random.normal(size=middle.normal.shape), np.ones(COUNT), spins[1])
+    used = np.hstack([0.0 * middle.normal, spins[2]])
+    rub = rubbing(ROLLING, middle, middle, held, Slip(motion, SIZE, used, secant))
+    pressed = np.abs(STIFFNESS * (RANGE - middle.gap) - 2.0 * np.sum(motion.velocity * middle.normal, axis=1))
+    force, before, after = (each[:, dimension:] for each in (rub.force, held, rub.displacement))
+    columns = (turning_parts(middle, each) for each in (force, SIZE * radius * spins[1], before, after))
+    for force, way, before, after, coefficient in zip(*columns, (0.3, 0.2), strict=True):
+        stored = 0.5 * TANGENTIAL * (length(after) ** 2 - length(before) ** 2)
+        assert np.all(-np.sum(force * way, axis=1) - stored >= -1e-12)
+        assert np.all(length(force) <= coefficient * pressed * (1.0 + 1e-9))
+    sliding = rubbing(LAW, middle, middle, held[:, :dimension], Slip(motion, SIZE, used[:, :dimension], secant))
+    np.testing.assert_array_equal(rub.force[:, :dimension], sliding.force)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_slopes_of_turning_are_those_of_its_couples(dimension):
+    """Without dashpots, which are held at their bound and have the slopes of secants."""
+    law = SpringDashpotLaw(ROLLING.options.model_copy(update={"tangential_damping": 0.0}), RANGE)
+    random, step, radius = np.random.default_rng(6), 1e-7, 0.5
+    middle = contacts_of(dimension, random)
+    spin, change, turned = random.normal(size=(3, COUNT, 1 if dimension == 2 else 3))
+    held = np.hstack([0.0 * middle.normal, 5e-3 * turned])
+
+    def rub_at(spin):
+        motion = Motion(0.1 * middle.normal, np.ones(COUNT), spin)
+        return rubbing(law, middle, middle, held, Slip(motion, SIZE, 0.0 * held, False))
+
+    slope = (rub_at(spin + step * change).force - rub_at(spin - step * change).force) / (2.0 * step * SIZE * radius)
+    way = np.hstack([0.0 * middle.normal, change])
+    expected = -np.einsum("mij,mj->mi", rub_at(spin).stiffness, way)
+    np.testing.assert_allclose(slope, expected, rtol=1e-4, atol=1e-4 * np.abs(expected).max())
+
+
 def test_mean_gaps_give_the_mean_force():
     """Into the range from outside of it, and from one gap to another."""
     start = contacts_of(2, np.random.default_rng(7), 0.1, 1.5)
@@ -100,24 +147,26 @@ def test_mean_gaps_give_the_mean_force():
     np.testing.assert_allclose(np.sum(LAW.force(there) * there.normal, axis=1), mean, atol=1e-10)
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
-def test_eliminated_forces_solve_the_whole_problem(dimension):
-    """q = q₀ + b (f - f₀) - S (w - w₀), w - w₀ = C (N (f - f₀) + q - q₁); for a full response C and a sparse one."""
+@pytest.mark.parametrize(("dimension", "width"), [(2, 2), (3, 3), (2, 3), (3, 6)])
+def test_eliminated_forces_solve_the_whole_problem(dimension, width):
+    """q = q₀ + b (f - f₀) - S (w - w₀), w - w₀ = C (N (f - f₀) + q - q₁); for a full response C and a sparse one, of
+    forces alone and with couples beside them."""
     random, count = np.random.default_rng(5), 4
     contacts = contacts_of(dimension, random)
     contacts = Contacts(*(getattr(contacts, name)[:count] for name in Contacts.__slots__))
-    force, expected, rise, used = random.normal(size=(4, count, dimension))
-    stiffness = random.uniform(size=(count, dimension, dimension))
+    force, expected, rise, used = random.normal(size=(4, count, width))
+    stiffness = random.uniform(size=(count, width, width))
     rub = Rubbing(force, expected, stiffness, rise, np.zeros_like(force))
-    root = random.normal(size=(dimension * count, dimension * count))
+    normal = np.hstack([contacts.normal, np.zeros((count, width - dimension))])
+    root = random.normal(size=(width * count, width * count))
     response, gap, (before, after) = root @ root.T, random.uniform(size=count), random.normal(size=(2, count))
     for given in (response, sparse.csr_matrix(response)):
         found = condensed(given, contacts, rub, gap, before, used)
         q = found.along(after)
-        changed = ((after - before)[:, None] * contacts.normal + q - used).T.ravel()
-        way = (response @ changed).reshape(dimension, count).T
+        changed = ((after - before)[:, None] * normal + q - used).T.ravel()
+        way = (response @ changed).reshape(width, count).T
         np.testing.assert_allclose(
             q, expected + rise * (after - before)[:, None] - np.einsum("mij,mj->mi", stiffness, way), rtol=1e-9
         )
-        opened = gap + np.sum(way * contacts.normal, axis=1)
+        opened = gap + np.sum(way * normal, axis=1)
         np.testing.assert_allclose(found.free + found.compliance @ after, opened, rtol=1e-9)

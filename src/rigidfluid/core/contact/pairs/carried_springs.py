@@ -20,11 +20,6 @@ _MOST_AT_ONCE = 10_000
 """Largest number of distances, of all springs to all contacts, that are measured at once."""
 
 
-def carried_displacement(springs: TangentialSprings | None, contacts: Contacts, pose: Pose) -> FloatArray:
-    """Displacements of ``springs`` in the ``contacts`` of bodies at ``pose``, (m, d), zero where none is [length]."""
-    return carried_springs(springs, contacts, pose)[0]
-
-
 def carried_springs(springs: TangentialSprings | None, contacts: Contacts, pose: Pose) -> tuple[FloatArray, FloatArray]:
     """Displacements (m, d) and turning (m, k) of ``springs`` in the ``contacts`` of bodies at ``pose``, zero where none
     is [length]."""
@@ -34,7 +29,7 @@ def carried_springs(springs: TangentialSprings | None, contacts: Contacts, pose:
         mine, theirs = _matched(springs, contacts, pose)
         kept, normal = springs.select(mine), contacts.normal[theirs]
         carried[theirs] = transported(kept.displacement, kept.normal, normal)
-        turning[theirs] = _turned(kept.turning, kept.normal, normal)
+        turning[theirs] = transported_turning(kept.turning, kept.normal, normal)
     return carried, turning
 
 
@@ -72,8 +67,9 @@ def transported(displacement: FloatArray, before: FloatArray, after: FloatArray)
     return np.asarray(turned - np.sum(turned * after, axis=1)[:, None] * after)
 
 
-def _turned(turning: FloatArray, before: FloatArray, after: FloatArray) -> FloatArray:
-    """Vectors ``turning`` (s, k) transported as displacements are, and their part along the normal with this."""
+def transported_turning(turning: FloatArray, before: FloatArray, after: FloatArray) -> FloatArray:
+    """Vectors ``turning`` (s, k) transported from normals ``before`` (s, d) to those ``after`` as displacements are,
+    and their part along the normal with this."""
     if turning.shape[1] == 1:
         return turning
     twisting = np.sum(turning * before, axis=1)[:, None]

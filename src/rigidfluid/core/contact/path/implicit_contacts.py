@@ -8,10 +8,10 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from rigidfluid.core.contact.pairs.carried_springs import carried_displacement, springs_at, transported
+from rigidfluid.core.contact.pairs.carried_springs import carried_springs, springs_at, transported, transported_turning
 from rigidfluid.core.contact.path.contact_load import evaluate_damping, wall_power
 from rigidfluid.core.contact.path.contact_newton import MOST_DENSE, Problem, contact_forces
-from rigidfluid.core.contact.path.delassus import delassus, delassus_of_points
+from rigidfluid.core.contact.path.delassus import delassus, delassus_of_points, delassus_of_turning
 from rigidfluid.core.contact.path.implicit_friction import (
     Condensed,
     Rubbing,
@@ -31,7 +31,7 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.wall import WallVelocities
 from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing
 from rigidfluid.core.model.contacts import middle as centre
-from rigidfluid.core.model.contacts import normal_part, tangential_part
+from rigidfluid.core.model.contacts import normal_part, tangential_part, turning_radius
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.kinematics import Kinematics
@@ -102,7 +102,8 @@ def implicit_contact_step(encounter: Encounter[M]) -> Crossing[M]:
     the way of the surfaces past each other by their mean velocity in both kicks, or in the drift where friction acts in
     kicks too, n and the points are those in mid-step (Gonzalez, J. Nonlinear Sci. 6 (1996) 449, doi:10.1007/BF02440162;
     Simo, Tarnow & Wong, Comput. Methods Appl. Mech. Eng. 100 (1992) 63, doi:10.1016/0045-7825(92)90115-Z). Dampers act
-    with the mean velocity, across the surfaces implicitly, along them and by couples with that of the iteration before.
+    with the mean velocity, across the surfaces implicitly, along them and by couples with that of the iteration before;
+    springs along the surfaces, those that resist turning, and dampers beside them are solved together with the gaps.
     The step is of second order where it resolves the contact, and keeps the energy at any length.
 
     The encounter's dynamics is left as it is. StepRejected is raised if bodies would overlap, no forces are found, or
@@ -111,7 +112,8 @@ def implicit_contact_step(encounter: Encounter[M]) -> Crossing[M]:
     law, start, size, wall_velocity = encounter.law, encounter.start, encounter.size, encounter.wall_velocity
     iterate = _straight_on(encounter)
     force, gap, dampers = np.zeros(len(start)), start.gap, _dampers(law, iterate, size)
-    rub = no_rubbing(dampers.along)
+    d = start.normal.shape[1]
+    rub = no_rubbing(_unheld(law, dampers))
     along = rub.force
     for update in range(MOST_UPDATES):
         response = _response(law, iterate, rub, force, along)
@@ -120,24 +122,25 @@ def implicit_contact_step(encounter: Encounter[M]) -> Crossing[M]:
         force, gap = contact_forces(problem, force, gap)
         spring = (force + dampers.across * (gap + offset)) / iterate.scale
         along = response.along(force)
-        total = force[:, None] * iterate.middle.normal + along
+        total = _normal_components(iterate.middle, force, along) + along
+        used = _used(law, iterate.middle, dampers, along)
         before = iterate
-        acting = contact_wrench(iterate.middle, total, iterate.pose, dampers.couple)
+        acting = contact_wrench(iterate.middle, total[:, :d], iterate.pose, used.couple)
         iterate = _evaluate(encounter, acting, iterate.place)
-        used = dampers._replace(along=along)
         if update < MOST_FORCE_UPDATES:
             dampers = _dampers(law, iterate, size)
         else:
             iterate = iterate._replace(scale=before.scale)
-        rub = no_rubbing(dampers.along)
+        rub = no_rubbing(_unheld(law, dampers))
         if law.sticking:
             slip = Slip(iterate.motion, size, along, update >= SLOPE_UPDATES)
             rub = _rubbing(encounter, iterate, gap, spring, slip)
-        wanted = (iterate.scale * spring - dampers.across * iterate.way)[:, None] * iterate.middle.normal + rub.force
+        pressing = iterate.scale * spring - dampers.across * iterate.way
+        wanted = _normal_components(iterate.middle, pressing, along) + rub.force
         if _converged(law, iterate, gap, wanted - total) and _turned_as_wanted(law, iterate, size, used, dampers):
             wall_work = 0.0
             if wall_velocity is not None:
-                wall_work = size * wall_power(wall_velocity, iterate.middle, total, used.couple)
+                wall_work = size * wall_power(wall_velocity, iterate.middle, total[:, :d], used.couple)
             stored = _most_stored(encounter, iterate)
             _refuse_to_create(encounter, iterate, before.scale * spring, stored)
             springs = _springs(encounter, iterate, rub)
@@ -151,7 +154,7 @@ class _Iterate(NamedTuple, Generic[M]):
 
     ``dynamics`` at the end; ``pose``, ``place`` on the motions, contacts and mean motion in mid-step; ``way`` n·Δx and
     ``gap`` at the end (m,) [length]; ``scale`` (g₁ - g₀)/(n·Δx) (m,) [1]; ``compliance`` Δt²/2 D (m, m) of the gaps, or
-    (d·m, d·m) of all ways where springs stick [length/force]; the ``wrench``.
+    (c·m, c·m) of all ways where springs stick [length/force]; the ``wrench``.
     """
 
     dynamics: M
@@ -169,7 +172,7 @@ class _Iterate(NamedTuple, Generic[M]):
 class _Dampers(NamedTuple):
     """Forces of dampers, ``across``: force over way along the normal (m,) [force/length]; ``along``: force in the
     surfaces (m, d), zero where springs and dampers there are solved together; ``couple`` on ``body_a`` (m, k), None
-    without any [force·length]."""
+    without any, or where springs resist turning [force·length]."""
 
     across: FloatArray
     along: FloatArray
@@ -222,7 +225,7 @@ def _evaluate(encounter: Encounter[M], wrench: Wrench, place: Kinematics) -> _It
 
 
 def _compliance(law: ForceLaw, contacts: Contacts, dynamics: BodyDynamics, size: float) -> Any:
-    responses = delassus_of_points if law.sticking else delassus
+    responses = delassus_of_turning if law.rolling else delassus_of_points if law.sticking else delassus
     matrix = 0.5 * size**2 * responses(contacts, dynamics, 0.5 * size)
     return matrix.toarray() if len(contacts) <= MOST_DENSE else matrix
 
@@ -237,9 +240,11 @@ def _response(law: ForceLaw, iterate: _Iterate[M], rub: Rubbing, force: FloatArr
 def _rubbing(encounter: Encounter[M], iterate: _Iterate[M], gap: FloatArray, spring: FloatArray, slip: Slip) -> Rubbing:
     """Forces of springs along the surfaces, where the mean forces ``spring`` (m,) lead to the ``gap`` (m,)."""
     law, dynamics, start = encounter.law, encounter.dynamics, encounter.start
-    held = carried_displacement(encounter.springs, start, dynamics.pose)
+    displacement, turning = carried_springs(encounter.springs, start, dynamics.pose)
     middle = contacts_of_mean_force(law, start, iterate.middle, gap, spring)
-    held = transported(held, start.normal, middle.normal)
+    held = transported(displacement, start.normal, middle.normal)
+    if law.rolling:
+        held = np.hstack([held, transported_turning(turning, start.normal, middle.normal)])
     return rubbing(law, middle, replace(middle, gap=iterate.gap), held, slip)
 
 
@@ -248,7 +253,9 @@ def _springs(encounter: Encounter[M], iterate: _Iterate[M], rub: Rubbing) -> Tan
     if not encounter.law.sticking:
         return None
     stiffness = encounter.law.tangential_stiffness(replace(iterate.middle, gap=iterate.gap))
-    springs = springs_at(iterate.middle, rub.displacement, stiffness, iterate.pose)
+    d = iterate.middle.normal.shape[1]
+    turning = rub.displacement[:, d:] if encounter.law.rolling else None
+    springs = springs_at(iterate.middle, rub.displacement[:, :d], stiffness, iterate.pose, turning)
     return springs if len(springs) else None
 
 
@@ -261,8 +268,29 @@ def _dampers(law: ForceLaw, iterate: _Iterate[M], size: float) -> _Dampers:
     across = -normal_part(straight, iterate.middle) / speed / size
     whole, couple = evaluate_damping(law, iterate.middle, iterate.motion)
     if law.sticking:
-        return _Dampers(across, np.zeros_like(normal), couple)
+        return _Dampers(across, np.zeros_like(normal), None if law.rolling else couple)
     return _Dampers(across, tangential_part(whole, iterate.middle), couple)
+
+
+def _unheld(law: ForceLaw, dampers: _Dampers) -> FloatArray:
+    """Forces of dampers along the surfaces (m, c), without any where springs resist turning."""
+    if not law.rolling:
+        return dampers.along
+    return np.hstack([dampers.along, np.zeros((len(dampers.along), 1 if dampers.along.shape[1] == 2 else 3))])
+
+
+def _used(law: ForceLaw, contacts: Contacts, dampers: _Dampers, along: FloatArray) -> _Dampers:
+    """Dampers, with the forces ``along`` the surfaces (m, c) and the couples in them."""
+    d = contacts.normal.shape[1]
+    couple = turning_radius(contacts) * along[:, d:] if law.rolling else dampers.couple
+    return dampers._replace(along=along[:, :d], couple=couple)
+
+
+def _normal_components(contacts: Contacts, force: FloatArray, along: FloatArray) -> FloatArray:
+    """The ``force`` (m,) along the normals in as many components as those ``along`` the surfaces (m, c)."""
+    whole, d = np.zeros_like(along), contacts.normal.shape[1]
+    whole[:, :d] = force[:, None] * contacts.normal
+    return whole
 
 
 def _converged(law: ForceLaw, iterate: _Iterate[M], gap: FloatArray, missing: FloatArray) -> bool:

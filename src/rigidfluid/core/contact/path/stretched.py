@@ -9,7 +9,7 @@ import numpy as np
 
 from rigidfluid.core.contact.pairs.carried_springs import carried_springs, springs_at
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.model.contacts import tangential_part
+from rigidfluid.core.model.contacts import tangential_part, turning_radius
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.tangential_springs import TangentialSprings, spring_energy
 from rigidfluid.core.model.types import Contacts, Motion, Pose
@@ -41,7 +41,7 @@ def stretched(
     displacement = law.held_displacement(contacts, motion, carried + way)
     work, couple, turning = float(np.sum(stiffness[:, None] * 0.5 * (carried + displacement) * way)), None, None
     if law.rolling:
-        radius = np.where(np.isnan(contacts.effective_radius), 0.0, contacts.effective_radius)[:, None]
+        radius = turning_radius(contacts)
         rolled = time * radius * motion.angular_velocity
         turning = law.held_turning(contacts, motion, turned + rolled)
         work += float(np.sum(stiffness[:, None] * 0.5 * (turned + turning) * rolled))

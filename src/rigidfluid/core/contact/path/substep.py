@@ -12,7 +12,7 @@ from rigidfluid.core.contact.laws.stiffness import contacts_on_the_way, greatest
 from rigidfluid.core.contact.path.delassus import delassus
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.wall import WallVelocities
-from rigidfluid.core.model.contacts import middle, normal_part, select
+from rigidfluid.core.model.contacts import middle, normal_part, select, turning_radius
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.part_results import refuse_no_number
@@ -197,7 +197,7 @@ def _tangential_sum(law: ForceLaw, contacts: Contacts, dynamics: BodyDynamics, i
     stiffness = np.max([law.tangential_stiffness(there) for there in touching], axis=0)
     square = _square_arms(contacts, dynamics)
     if law.rolling:
-        square += np.where(np.isnan(contacts.effective_radius), 0.0, contacts.effective_radius**2)[:, None]
+        square += turning_radius(contacts) ** 2
     turning = square * _lightest(contacts, dynamics)
     return _highest_sum(stiffness, contacts, inverse + turning)
 
