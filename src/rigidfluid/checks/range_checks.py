@@ -25,7 +25,7 @@ def start_findings(system: System, interaction: Interaction, start: Contacts) ->
     impact. ``start`` has the contacts of bodies and all surfaces of the domain."""
     repelling = np.append(np.arange(len(system.bodies)), [wall.surface for wall in system.walls])
     law = interaction.law
-    near = select(start, (start.gap < law.range) & np.isin(start.body_b, repelling))
+    near = select(start, (start.gap < law.range) & (start.sign > 0.0) & np.isin(start.body_b, repelling))
     near = select(near, are_separate(system, near) & interaction.acts_in(near))
     if len(near) == 0:
         return
@@ -33,8 +33,9 @@ def start_findings(system: System, interaction: Interaction, start: Contacts) ->
     most = int(np.argmax(stored))
     names = system.surfaces[near.body_a[most]], system.surfaces[near.body_b[most]]
     gap, energy = float(near.gap[most]), float(stored[most])
-    found = {"pairs": len(near), "gap": gap, "energy": energy, "impact_energy": float(impact[most])}
-    text = f"{len(near)} pairs start within range, {names[0]} and {names[1]} at a gap of {figure(gap)}"
+    pairs = len({*zip(near.body_a.tolist(), near.body_b.tolist(), strict=True)})
+    found = {"pairs": pairs, "gap": gap, "energy": energy, "impact_energy": float(impact[most])}
+    text = f"{pairs} pairs start within range, {names[0]} and {names[1]} at a gap of {figure(gap)}"
     if energy <= impact[most]:
         yield Finding("note", "start", names, text, found=found)
         return

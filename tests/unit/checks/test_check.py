@@ -286,6 +286,12 @@ def test_bodies_that_start_within_range() -> None:
     assert not found("start", BALL)
 
 
+def test_a_block_that_lies_within_range_is_one_pair_with_the_floor() -> None:
+    corners = [[-RADIUS, -RADIUS], [RADIUS, -RADIUS], [RADIUS, RADIUS], [-RADIUS, RADIUS]]
+    block = {"type": "polygon", "points": corners, "density": 1.5, "position": [1.0, RADIUS + 0.5 * RANGE]}
+    assert only("start", block, fluid={"backend": "dry"}).found["pairs"] == 1
+
+
 def test_open_faces_and_parts_of_one_body_do_not_start_within_range() -> None:
     near = BALL | {"position": [1.0, RADIUS + 0.5 * RANGE]}
     assert not found("start", near, boundary=[{"on": "bottom", "type": "slip"}])

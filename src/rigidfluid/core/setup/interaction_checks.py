@@ -63,7 +63,7 @@ def _check_sticking(interactions: Sequence[Interaction]) -> None:
         if _may_meet(one, other):
             found, allowed = f"a spring along surfaces that {one.field} has one along too", "one such law in a contact"
             remedy = "Keep them to different contacts by `between` or `names`."
-            raise SceneError(f"{other.field}.law", found, allowed, remedy)
+            raise SceneError(f"{other.field}.friction", found, allowed, remedy)
 
 
 def _check_sliding(interactions: Sequence[Interaction], stepping: ContactStepping) -> None:
@@ -75,7 +75,8 @@ def _check_sliding(interactions: Sequence[Interaction], stepping: ContactSteppin
             if _may_meet(one, other):
                 found = f"{other.law.name!r} that resists sliding where {one.field} has a spring along surfaces"
                 remedy = "Leave contact.stepping out, or keep them to different contacts by `between` or `names`."
-                raise SceneError(f"{other.field}.law", found, "one such law in a contact in implicit steps", remedy)
+                key = "friction" if other.law.friction > 0.0 else "law"
+                raise SceneError(f"{other.field}.{key}", found, "one such law in a contact in implicit steps", remedy)
 
 
 def _slides(law: ForceLaw) -> bool:

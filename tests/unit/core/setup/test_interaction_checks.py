@@ -59,13 +59,16 @@ def test_a_film_that_resists_sliding_is_for_round_surfaces(where: dict, refused:
 
 RUBBING = {"law": "normal", "range": 0.02, "epsilon": 1e-3, "friction": 0.5}
 BRAKES = {
-    "a film": FILM | {"sliding": True},
-    "friction without memory": {"law": "spring-dashpot", "range": 0.02, "stiffness": 1e3, "friction": 0.5},
+    "a film": (FILM | {"sliding": True}, "law"),
+    "friction without memory": (
+        {"law": "spring-dashpot", "range": 0.02, "stiffness": 1e3, "friction": 0.5},
+        "friction",
+    ),
 }
 
 
-@pytest.mark.parametrize("brake", BRAKES.values(), ids=BRAKES)
-def test_springs_along_surfaces_and_another_brake_in_one_contact_need_substeps(brake: dict) -> None:
+@pytest.mark.parametrize(("brake", "key"), BRAKES.values(), ids=BRAKES)
+def test_springs_along_surfaces_and_another_brake_in_one_contact_need_substeps(brake: dict, key: str) -> None:
     """Implicit steps would bound the sum of both by the friction of the springs."""
     disk = {"name": "disk", "type": "sphere", "radius": 0.1, "density": 1.0, "position": [0.5, 0.3]}
 
@@ -77,6 +80,13 @@ def test_springs_along_surfaces_and_another_brake_in_one_contact_need_substeps(b
 
     with pytest.raises(SceneError, match=r"resists sliding where interaction\.0") as refused:
         built("implicit", "all")
-    assert refused.value.subject == "interaction.1.law"
+    assert refused.value.subject == f"interaction.1.{key}"
     for stepping, between in (("substeps", "all"), ("implicit", "pairs")):
         assert built(stepping, between).law.sticking
+
+
+def test_a_second_friction_with_springs_in_a_contact_is_told_by_its_key() -> None:
+    disk = {"name": "disk", "type": "sphere", "radius": 0.1, "density": 1.0, "position": [0.5, 0.3]}
+    with pytest.raises(SceneError, match=r"a spring along surfaces that interaction\.0") as refused:
+        build_system(scene_from_dict(dry_tables(disk) | {"interaction": [RUBBING, RUBBING]}))
+    assert refused.value.subject == "interaction.1.friction"
