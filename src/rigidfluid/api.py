@@ -65,6 +65,7 @@ from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.mechanism import Component, Mechanism
 from rigidfluid.core.model.part import Part, PartOptions
+from rigidfluid.core.model.pose_law import PairPoses, PoseLaw
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import (
@@ -98,6 +99,7 @@ from rigidfluid.core.scene.vectors import Vector
 from rigidfluid.core.setup.contact_laws import ContactLaw
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.core.setup.model import ConditionMaker, ContactStepping, Model
+from rigidfluid.core.setup.pair_forces import PairForce
 from rigidfluid.core.setup.rigid_body import JoinedBodies, PlacedMechanism, RigidBody
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
@@ -126,6 +128,7 @@ from rigidfluid.errors import (
 from rigidfluid.forces.barrier import BarrierLaw, BarrierOptions
 from rigidfluid.forces.centre import CentreLaw, CentreOptions
 from rigidfluid.forces.contact import ContactPointLaw, ContactPointOptions
+from rigidfluid.forces.dipole import DipoleLaw, DipoleOptions
 from rigidfluid.forces.lubrication import LubricationLaw, LubricationOptions
 from rigidfluid.forces.normal import NormalLaw, NormalOptions
 from rigidfluid.forces.spring_dashpot import SpringDashpotLaw, SpringDashpotOptions
@@ -217,6 +220,8 @@ __all__ = [
     "CoordinateDamper",
     "CoordinateSpring",
     "Detector",
+    "DipoleLaw",
+    "DipoleOptions",
     "Displacement",
     "Dolfinx",
     "DolfinxOptions",
@@ -276,6 +281,8 @@ __all__ = [
     "OnAxis",
     "OutputError",
     "OutputTable",
+    "PairForce",
+    "PairPoses",
     "Part",
     "PartOptions",
     "Periodic",
@@ -289,6 +296,7 @@ __all__ = [
     "Polyhedron",
     "PolyhedronOptions",
     "Pose",
+    "PoseLaw",
     "Positive",
     "PrescribedPressure",
     "PrescribedTable",

@@ -24,6 +24,7 @@ _MODULES = (
     "force_law",
     "joint",
     "mechanism",
+    "pose_law",
     "size_field",
 )
 pytest.register_assert_rewrite(*(f"rigidfluid.testing.{module}" for module in _MODULES))
@@ -36,6 +37,7 @@ from rigidfluid.testing.fluid_backend import FluidBackendContract
 from rigidfluid.testing.force_law import ForceLawContract
 from rigidfluid.testing.joint import JointContract
 from rigidfluid.testing.mechanism import MechanismContract
+from rigidfluid.testing.pose_law import PoseLawContract
 from rigidfluid.testing.size_field import SizeFieldContract
 
 __all__ = [
@@ -47,5 +49,6 @@ __all__ = [
     "ForceLawContract",
     "JointContract",
     "MechanismContract",
+    "PoseLawContract",
     "SizeFieldContract",
 ]

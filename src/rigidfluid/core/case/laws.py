@@ -1,4 +1,4 @@
-"""Laws of contact that a scene names: one in `[contact]`, and one in each `[[interaction]]`."""
+"""Laws that a scene names, one in `[contact]` and one in each `[[interaction]]`: of contact, and long-range ones."""
 
 from __future__ import annotations
 
@@ -6,10 +6,13 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from rigidfluid.core.model.force_law import Between, ForceLaw
+from rigidfluid.core.model.pose_law import PoseLaw
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.nested.part_options import own_options, refuse_unread
 from rigidfluid.core.scene.contact_tables import ContactTable, InteractionTable
 from rigidfluid.core.setup.contact_laws import MAY_BE_OWN, ContactLaw, is_own
+from rigidfluid.core.setup.pair_forces import PairForce
+from rigidfluid.errors import SceneError
 from rigidfluid.registry import DETECTOR, FORCE_LAW, Registry
 
 
@@ -23,13 +26,15 @@ class _LawTable(NamedTuple):
 
 
 def scene_laws(contact: ContactTable, interactions: Sequence[InteractionTable], registry: Registry) -> list[ContactLaw]:
-    """All laws of a scene, that of `[contact]` first; raises PluginError for one that is missing, SceneError for an
-    option that is not allowed."""
+    """All laws of contact of a scene, that of `[contact]` first; raises PluginError for one that is missing, SceneError
+    for an option that is not allowed."""
     found = []
     for field, table, between, names in _law_tables(contact, interactions):
         assert table.law is not None
         assert table.range is not None
         part = registry.get(FORCE_LAW, table.law, f"{field}.law")
+        if issubclass(part, PoseLaw):
+            continue
         others = registry.installed(DETECTOR) if isinstance(table, ContactTable) else []
         refuse_unread(table.options, [part, *others], type(table).model_fields, field)
         common = {key: getattr(table, key) for key in MAY_BE_OWN if getattr(table, key) is not None}
@@ -49,6 +54,36 @@ def scene_laws(contact: ContactTable, interactions: Sequence[InteractionTable], 
             )
         )
     return found
+
+
+def scene_pair_forces(
+    contact: ContactTable, interactions: Sequence[InteractionTable], registry: Registry
+) -> list[PairForce]:
+    """All long-range forces of a scene; raises as `scene_laws` does, also for a table without two names, and for keys
+    of laws of contact."""
+    found = []
+    for field, table, _, names in _law_tables(contact, interactions):
+        assert table.law is not None
+        assert table.range is not None
+        part = registry.get(FORCE_LAW, table.law, f"{field}.law")
+        if issubclass(part, PoseLaw):
+            _refuse_keys_of_contact(table, part, field)
+            if len(names) != 2:
+                allowed = f"the names of two bodies with {part.name!r}, in [[interaction]]"
+                raise SceneError(f"{field}.names", list(names) or "none", allowed, "Add a table for each pair.")
+            refuse_unread(table.options, [part], type(table).model_fields, field)
+            options = own_options(part, table.options, field)
+            found.append(PairForce(Selected[PoseLaw](part, options), table.range, names, field))
+    return found
+
+
+def _refuse_keys_of_contact(table: ContactTable | InteractionTable, part: type[PoseLaw], field: str) -> None:
+    for key in ("smallest_gap", *MAY_BE_OWN, "restitution_stokes", "roughness"):
+        if getattr(table, key) is not None:
+            allowed = f"a law of contact, which {part.name!r} is not"
+            raise SceneError(f"{field}.{key}", getattr(table, key), allowed, "Remove it, or choose another law.")
+    if isinstance(table, InteractionTable) and table.between == "walls":
+        raise SceneError(f"{field}.between", "walls", f"pairs, where {part.name!r} acts", "Leave it out.")
 
 
 def _law_tables(contact: ContactTable, interactions: Sequence[InteractionTable]) -> Iterator[_LawTable]:

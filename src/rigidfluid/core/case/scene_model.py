@@ -11,7 +11,7 @@ from rigidfluid.core.case.boundary_table_checks import check_boundary_tables
 from rigidfluid.core.case.contact_table_checks import check_contact_table
 from rigidfluid.core.case.fluid import scene_fluid
 from rigidfluid.core.case.joint_kinds import scene_joints
-from rigidfluid.core.case.laws import scene_laws
+from rigidfluid.core.case.laws import scene_laws, scene_pair_forces
 from rigidfluid.core.case.mechanisms import placed_mechanisms
 from rigidfluid.core.case.periodic import periodic_pairs
 from rigidfluid.core.case.table_values import values_of
@@ -32,6 +32,7 @@ from rigidfluid.core.setup.contact_laws import ContactLaw, told_apart
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.core.setup.made_bodies import check_made_bodies
 from rigidfluid.core.setup.model import ContactStepping, Model
+from rigidfluid.core.setup.pair_forces import PairForce
 from rigidfluid.core.setup.rigid_body import JoinedBodies, PlacedMechanism, RigidBody
 from rigidfluid.errors import ArgumentError
 from rigidfluid.registry import BODY, DETECTOR, DOMAIN, Registry
@@ -91,11 +92,12 @@ def _model(scene: Scene, registry: Registry) -> Model:
         )
         fluid = ask(scene_fluid, scene.fluid, scene.mesh, registry, scene.dimension)
         laws = ask(scene_laws, scene.contact, scene.interaction, registry)
+        pair_forces = ask(scene_pair_forces, scene.contact, scene.interaction, registry)
         joints = ask(scene_joints, scene.joint, registry, scene.dimension)
         model = (
             None
             if ask.errors
-            else ask(_compose, scene, registry, _Parts(domain, bodies, mechanisms, fluid, laws, joints))
+            else ask(_compose, scene, registry, _Parts(domain, bodies, mechanisms, fluid, laws, pair_forces, joints))
         )
         if ask.errors and domain is not None:
             ask(check_made_bodies, domain, bodies, mechanisms or (), registry)
@@ -111,11 +113,12 @@ class _Parts(NamedTuple):
     mechanisms: tuple[PlacedMechanism, ...]
     fluid: Fluid | NoFluid
     laws: Sequence[ContactLaw]
+    pair_forces: Sequence[PairForce]
     joints: tuple[JoinedBodies, ...]
 
 
 def _compose(scene: Scene, registry: Registry, parts: _Parts) -> Model:
-    domain, bodies, mechanisms, fluid, laws, joints = parts
+    domain, bodies, mechanisms, fluid, laws, pair_forces, joints = parts
     shapes = [body.shape for body in bodies] + [one.shape for each in mechanisms for one in each.mechanism.components]
     detector, why = _detector(scene.contact, registry, (shapes, domain), fluid.backend.part.wet, laws)
     model = Model(
@@ -128,6 +131,7 @@ def _compose(scene: Scene, registry: Registry, parts: _Parts) -> Model:
         mechanisms=mechanisms,
         joints=joints,
         laws=told_apart(laws, domain.pieces),
+        pair_forces=tuple(pair_forces),
         detector=detector,
         stepping=ContactStepping(
             scene.contact.substeps, scene.contact.stepping == "implicit", scene.contact.impact_speed

@@ -19,7 +19,9 @@ from rigidfluid.core.joints.joint_parts import ground_parts, joint_parts
 from rigidfluid.core.joints.jointed_dynamics import JointedDynamics
 from rigidfluid.core.joints.link_parts import LinkParts
 from rigidfluid.core.joints.markers import Markers, PlacedPair
+from rigidfluid.core.joints.pair_spring import PairSpring
 from rigidfluid.core.joints.redundancy import motion_of, refuse_redundant, refuse_void
+from rigidfluid.core.joints.springs import Spring
 from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, rotate
 from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_sum
 from rigidfluid.core.model.dynamics import ImpulsiveDynamics
@@ -45,7 +47,8 @@ class JointLinkage:
 
     ``pose`` is that of the bodies at the start, on ``motions``; ``prescribed_twist`` gives the prescribed twists (N,
     d+k) at a time; ``resistance`` (n, d+k) is a lower bound of that of a fluid without inertia [force·time/length |
-    force·length·time]. Raises SceneError if a joint holds nothing that moves freely, or what other joints hold already.
+    force·length·time]; ``forces`` are long-range ones between two bodies. Raises SceneError if a joint holds nothing
+    that moves freely, or what other joints hold already.
 
     ``clusters`` (N,) is equal for motions that joints link, directly or over others, and is a motion's own number where
     it is linked to nothing, or to the ground alone. ``frequency`` is that of the springs on the masses without joints,
@@ -62,13 +65,14 @@ class JointLinkage:
         motions: Motions,
         prescribed_twist: Callable[[float], FloatArray],
         resistance: FloatArray | None = None,
+        forces: Sequence[PairSpring] = (),
     ) -> None:
         self._motions, self._prescribed_twist = motions, prescribed_twist
         self._prescribed, self._carrier = motions.prescribed, motions.carrier
         self._parts = [*(joint_parts(joint, pose) for joint in joints), *(ground_parts(link, pose) for link in ground)]
         self._slices = _slices(self._parts)
         self._constraints = [one for part in self._parts for one in part.constraints]
-        self._springs = [one for part in self._parts for one in part.springs]
+        self._springs: list[Spring] = [*(one for part in self._parts for one in part.springs), *forces]
         self._compliance = np.concatenate([np.zeros(0), *(one.compliance for one in self._constraints)])
         self._markers = Markers([one.markers for one in self._constraints], pose.position.shape[1])
         lengths = [one.directions(at)[0].any(axis=1) for one, at in self._placed(pose)]
@@ -79,6 +83,7 @@ class JointLinkage:
         self.linked, self.clusters = self._link_clusters(
             [(one.first, one.second) for one in joints], [one.body for one in ground]
         )
+        self.linked[[self._carrier[body] for force in forces for body in (force.first, force.second)]] = True
         self.driven = motions.driven or bool(self._prescribed.any()) or bool(drives)
         self.misfit(motions.pose, 0.0)  # so that a constraint that cannot answer is named before the first step
         refuse_void(self._constraints, self._carrier, self._prescribed)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.mechanics.rigid import moment
 from rigidfluid.core.model.types import Contacts, Pose, Twist, Wrench
 
 
@@ -26,6 +27,15 @@ def contact_wrench(
         if couple_on_a is not None:
             accumulate_couples(wrench.torque, contacts.body_a, contacts.body_b, couple_on_a)
     return wrench
+
+
+def add_pair_wrench(wrench: Wrench, pose: Pose, pair: tuple[int, int], force: FloatArray, couple: FloatArray) -> None:
+    """Add to the ``wrench`` on bodies at ``pose``, in place, a ``force`` (d,) on the first of a ``pair`` at the middle
+    between both centres of mass and a ``couple`` (k,), and the opposite of both on the second."""
+    centre = 0.5 * (pose.position[pair[0]] + pose.position[pair[1]])
+    for sign, body in zip((1.0, -1.0), pair, strict=True):
+        wrench.force[body] += sign * force
+        wrench.torque[body] += sign * (moment((centre - pose.position[body])[None], force[None])[0] + couple)
 
 
 def nothing(pose: Pose) -> Wrench:

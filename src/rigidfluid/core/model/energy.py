@@ -107,14 +107,14 @@ class Ledger:
 
     @property
     def put_in(self) -> float:
-        """Energy stored at the start, and that which came in since, as far as more came in than went out the same
-        way."""
-        return self.initial + sum(max(work, 0.0) for work in self.works)
+        """Energy stored at the start, of attraction its size, and that which came in since, as far as more came in than
+        went out the same way."""
+        return abs(self.initial) + sum(max(work, 0.0) for work in self.works)
 
     @property
     def relative_residual(self) -> float:
         """The residual over the energy that has passed through."""
-        passed = max(sum(map(abs, self.works)), self.kinetic, self.initial)
+        passed = max(sum(map(abs, self.works)), self.kinetic, abs(self.initial))
         return self.residual / passed if passed > 0 else 0.0
 
     def after(self, step: float, power: Power, work: Work, kinetic: float, contact: float) -> Ledger:

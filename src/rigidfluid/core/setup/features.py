@@ -100,8 +100,8 @@ def _contact(system: System) -> Iterator[Feature]:
 def _joints(system: System) -> Feature:
     linked = system.joints.linked
     if not linked.any():
-        return Feature("joints", False, "no table [[joint]], no body with `free` or `spring`")
-    return Feature("joints", True, f"they hold {int(np.count_nonzero(linked))} of {len(linked)} motions")
+        return Feature("joints", False, "no table [[joint]], no body with `free` or `spring`, no long-range force")
+    return Feature("joints", True, f"they hold or pull {int(np.count_nonzero(linked))} of {len(linked)} motions")
 
 
 def _law(system: System, interaction: Interaction) -> str:

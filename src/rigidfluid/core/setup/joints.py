@@ -11,6 +11,7 @@ from rigidfluid.core.joints.joint import PlacedJoint
 from rigidfluid.core.joints.linkage import JointLinkage
 from rigidfluid.core.model.joints import GroundLink, NoJoints
 from rigidfluid.core.scene.joint_tables import SpringTable
+from rigidfluid.core.setup.pair_forces import pair_springs
 from rigidfluid.core.setup.quick_strokes import refuse_quick_drive
 from rigidfluid.errors import SceneError
 
@@ -34,7 +35,7 @@ def build_joints(
     prescribed_twist: Callable[[float], FloatArray],
     resistance: FloatArray | None,
 ) -> Joints:
-    """Joints and ground links between the motions of a model at the start.
+    """Joints, ground links and long-range forces between the motions of a model at the start.
 
     ``pose`` is the bodies', ``prescribed_twist`` the prescribed twists (N, d+k) of the N motions by time;
     ``resistance`` (n, d+k) is a lower bound of that of a fluid
@@ -42,13 +43,14 @@ def build_joints(
     nothing can move in one, or a spring is too stiff for the step.
     """
     ground = [_ground_link(body, number) for number, body in enumerate(model.bodies) if body.linked_to_ground]
-    if not model.joints and not ground:
+    forces = pair_springs(model)
+    if not (model.joints or ground or forces):
         return NoJoints(len(motions.mass))
     joints = placed_joints(model, pose)
     for joint in joints:
         if joint.kind.drive is not None:
             refuse_quick_drive(joint.kind.drive, joint.name, model.time)
-    linkage = JointLinkage(pose, joints, ground, motions, prescribed_twist, resistance)
+    linkage = JointLinkage(pose, joints, ground, motions, prescribed_twist, resistance, forces)
     _check_step(model.time.step, linkage)
     return linkage
 
@@ -95,4 +97,4 @@ def _check_step(step: float, linkage: JointLinkage) -> None:
     if turn > LONGEST_TURN:
         found = f"{step:g}, in which the stiffest spring turns by {turn:.3g} rad"
         allowed = f"at most {LONGEST_TURN / linkage.frequency:.3g}, {LONGEST_TURN:g} rad"
-        raise SceneError("time.step", found, allowed, "Shorten it, or soften the spring.")
+        raise SceneError("time.step", found, allowed, "Shorten it, or weaken the spring or long-range force.")

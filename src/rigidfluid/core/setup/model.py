@@ -28,6 +28,7 @@ from rigidfluid.core.setup.contact_laws import ContactLaw, told_apart
 from rigidfluid.core.setup.description import describe
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.core.setup.model_checks import check_model
+from rigidfluid.core.setup.pair_forces import PairForce
 from rigidfluid.core.setup.placed_bodies import Arrangement
 from rigidfluid.core.setup.rigid_body import JoinedBodies, PlacedMechanism, RigidBody
 from rigidfluid.described import Described, first_names
@@ -79,6 +80,8 @@ class Model(Arrangement, Described):
         Joints of bodies with each other or the ground.
     laws : sequence of ContactLaw
         Forces of contact.
+    pair_forces : sequence of PairForce
+        Long-range forces between two bodies.
     detector : Selected, optional
         Class of the detector and its options; the cheapest that is exact if not given.
     stepping : ContactStepping
@@ -108,6 +111,7 @@ class Model(Arrangement, Described):
     mechanisms: Annotated[tuple[PlacedMechanism, ...], AnyRow] = ()
     joints: Annotated[tuple[JoinedBodies, ...], AnyRow] = ()
     laws: Annotated[tuple[ContactLaw, ...], AnyRow] = ()
+    pair_forces: Annotated[tuple[PairForce, ...], AnyRow] = ()
     detector: Selected[Detector] | None = None
     stepping: ContactStepping = ContactStepping()
     window: WindowTable | None = None
@@ -132,9 +136,13 @@ class Model(Arrangement, Described):
             "bodies": first_names([body.name for body in self.bodies]),
             "mechanisms": first_names([placed.name for placed in self.mechanisms]),
             "joints": len(self.joints) or None,
-            "laws": first_names([law.law.part.__name__ for law in self.laws]),
+            "laws": first_names([law.part.__name__ for law in self._all_laws]),
             "time": f"to {self.time.end:g} in steps of {self.time.step:g}",
         }
+
+    @property
+    def _all_laws(self) -> list[Selected[Any]]:
+        return [law.law for law in self.laws] + [force.law for force in self.pair_forces]
 
     def told_by(self, scene: Scene, detector_why: str) -> Model:
         """The same model, with the scene that it was made of for results and checkpoints, and why its detector was

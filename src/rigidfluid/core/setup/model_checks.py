@@ -19,6 +19,7 @@ from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.core.setup.joint_checks import check_joints
 from rigidfluid.core.setup.mechanism_checks import refuse_invalid
 from rigidfluid.core.setup.mesh_checks import check_cells, check_mesh_table
+from rigidfluid.core.setup.pair_forces import check_pair_forces
 from rigidfluid.core.setup.placed_bodies import check_names, doubled
 from rigidfluid.core.setup.quick_strokes import refuse_quick_mechanisms
 from rigidfluid.errors import SceneError
@@ -238,5 +239,6 @@ _QUESTIONS: tuple[Callable[[Model], None], ...] = (
     _check_around,
     _check_probes,
     check_laws,
+    check_pair_forces,
 )
 """Questions that do not depend on each other, of a model whose bodies are valid one by one."""
