@@ -70,9 +70,8 @@ class EnergyAccount:
 
     ``at_hand``, ``creation`` and ``loss`` [energy]: as in `energy_at_hand` and `creation_and_loss`.
 
-    Put in: what was stored at the start, of attraction its size, the most that gravity had worked by any time, and the
-    most that faces, prescribed bodies and the force on the fluid had. The error at a time is the residual and what
-    re-meshing took.
+    Put in: what was stored at the start, the most that gravity had worked by any time, and the most that faces,
+    prescribed bodies and the force on the fluid had. The error at a time is the residual and what re-meshing took.
     Shares of what was put in, zero where that is nothing: ``created``, the lowest that it was after the first step,
     less that step's own, its sign changed; ``lost``, the highest, without what friction between the fluid's solutions
     explains. Shares of what was put in, or at hand if that is more: ``unaccounted``, the residual at the end;
@@ -167,7 +166,7 @@ def _refuse_gaps(energy: Table) -> None:
 def _put_in(energy: Table) -> float:
     driven = energy["boundary"] + energy["control"] + energy["body_force"]
     start = energy["kinetic"][0] + energy["contact"][0]
-    return float(abs(start) + max(energy["gravity"].max(), 0.0) + max(driven.max(), 0.0))
+    return float(start + max(energy["gravity"].max(), 0.0) + max(driven.max(), 0.0))
 
 
 def _excess(balance: FloatArray) -> FloatArray:
