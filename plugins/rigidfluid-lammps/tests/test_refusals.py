@@ -17,6 +17,10 @@ ROLLING = {
     **{"tangential_stiffness": 1e5, "rolling_friction": 0.1},
 }
 FILM = {"law": "lubrication", "range": 0.01, "viscosity": 0.05, "cutoff": 1e-3}
+DIPOLES = {
+    **{"law": "dipole", "range": 2.0, "strength": 1e-6, "names": ["one", "other"]},
+    **{"moments": [[1.0, 0.0], [1.0, 0.0]]},
+}
 ONE, OTHER = ball([0.3, 0.5], [0.0, 0.0], name="one"), ball([0.8, 0.8], [0.0, 0.0], name="other")
 UNMOVED, SHAPELESS = ({key: ONE[key] for key in ONE if key != left_out} for left_out in ("velocity", "radius"))
 SWIMMER = {
@@ -41,6 +45,7 @@ REFUSED: dict[str, tuple[str, Tables]] = {
     "friction": ("contact.friction: found 0.5", {"contact": NORMAL | {"friction": 0.5}}),
     "friction of rolling, elsewhere": ("interaction.0.rolling_friction", {"interaction": [ROLLING]}),
     "two laws": ("interaction: found 2 interactions", {"interaction": [NORMAL, FILM]}),
+    "a long-range force": ("interaction: found a long-range force", {"interaction": [DIPOLES]}),
     "a law for some": ("interaction: found 1 interactions", {"interaction": [NORMAL | {"between": "walls"}]}),
 }
 

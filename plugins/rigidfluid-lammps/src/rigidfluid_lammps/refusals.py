@@ -10,8 +10,8 @@ def refuse_foreign(scene: Scene, system: System) -> None:
     """Raise CrosscheckError if LAMMPS has no exact counterpart for something in the scene.
 
     Refused are a fluid, shapes other than balls, walls that slide or lie across no axis, motions that are prescribed,
-    articulated bodies, joints, springs, held directions, several laws or one for some contacts alone, and laws that
-    take energy out, but for ``spring-dashpot``.
+    articulated bodies, joints, springs, held directions, long-range forces, several laws or one for some contacts
+    alone, and laws that take energy out, but for ``spring-dashpot``.
     """
     if system.has_fluid:
         raise CrosscheckError(
@@ -21,6 +21,9 @@ def refuse_foreign(scene: Scene, system: System) -> None:
     for number in range(len(scene.body)):
         _refuse_body(scene, system, number)
     _refuse_walls(system)
+    if system.joints.linked.any():
+        found, allowed = "a long-range force between two bodies", "laws of contact"
+        raise CrosscheckError("interaction", found, allowed, "Leave it out.")
     _refuse_law(scene, system)
 
 
