@@ -10,7 +10,7 @@ from flat_bodies import DOMINO_SHELL, GAP, GRAVITY, ON_THE_FLOOR, THICKNESS, dom
 from matplotlib.figure import Figure
 from page_tools import Page, Run, Work, table
 
-COUNT, END, SETTLED = 20, 3.4, 4
+COUNT, END, SETTLED = 18, 3.2, 3
 """Dominoes in a row, the end of runs [√(length/gravity) · √10], and how many dominoes at its end give the speed."""
 
 
@@ -26,8 +26,10 @@ class Row:
 
     def made(self, work: Work, label: str) -> Run:
         """Its run."""
-        scene = domino_row(COUNT, END, friction=self.friction, gap=self.gap, floor=self.floor)
-        return work.run(label, scene, [f"time.step={self.step * float(scene.time.step)}", "output.every=0.4"])
+        scene = domino_row(COUNT, END, friction=self.friction, gap=self.gap, floor=self.floor).to_dict()
+        scene["time"]["step"] *= self.step
+        scene["output"]["every"] = 0.4
+        return work.run(label, rigidfluid.scene_from_dict(scene))
 
     def expected(self) -> np.ndarray:
         """Speeds by the theory from the second domino on, (COUNT - 2,) [√(g h)]."""
@@ -44,7 +46,7 @@ ROWS = {
 }
 """By folder."""
 HEAD = ("gap [h]", "friction", "on the floor", "steps", f"speed of the last {SETTLED} [√(gh)]")
-HEAD += ("by the theory", "off", "CPU time [s]")
+HEAD += ("by the theory", "off", "created, lost [%]", "CPU time [s]")
 
 
 @dataclass(frozen=True)
@@ -71,6 +73,7 @@ class Fallen:
     def line(self) -> tuple[str, ...]:
         """Line of the table."""
         found, expected = self.figures
+        energy = self.run.summary["energy"]
         return (
             f"{self.row.gap:g}",
             f"{self.row.friction:g}",
@@ -79,6 +82,7 @@ class Fallen:
             f"{found:.4f}",
             f"{expected:.4f}",
             f"{found / expected - 1.0:+.2%}",
+            f"{100.0 * energy['created']:.2f}, {100.0 * energy['lost']:.2f}",
             f"{self.run.cpu_seconds:.0f}",
         )
 

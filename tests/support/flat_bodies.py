@@ -84,7 +84,7 @@ def domino_row(
     law = {"law": "spring-dashpot", "range": DOMINO_SHELL, "stiffness": stiffness, "restitution": 0.3}
     size = {"end": end * faster, "step": DOMINO_STEP * faster, "upper": [0.6 + count * pitch - 0.5 * THICKNESS, 2.0]}
     data = dry_scene({"substeps": 10}, *row, gravity=[0.0, -gravity], **size).to_dict()
-    sticking = {"tangential_stiffness": 0.8 * stiffness}
+    sticking = {"tangential_stiffness": 0.8 * stiffness, "tangential_damping": 0.0}
     data["interaction"] = [
         law | ({"friction": friction} | sticking if friction > 0.0 else {}) | {"between": "pairs"},
         law | {"friction": floor} | sticking | {"between": "walls"},
