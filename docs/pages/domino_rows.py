@@ -10,6 +10,8 @@ from flat_bodies import DOMINO_SHELL, GAP, GRAVITY, ON_THE_FLOOR, THICKNESS, dom
 from matplotlib.figure import Figure
 from page_tools import Page, Run, Work, table
 
+import rigidfluid
+
 COUNT, END, SETTLED = 18, 3.2, 3
 """Dominoes in a row, the end of runs [√(length/gravity) · √10], and how many dominoes at its end give the speed."""
 
