@@ -53,7 +53,7 @@ def measured(
     return Statistics(
         results.units,
         samples,
-        mean(samples.gap.mean(axis=1)),
+        mean(samples.mean_gap),
         mean_velocity(samples),
         velocity_fluctuations(samples),
         pair_distribution(samples),

@@ -137,6 +137,14 @@ def test_of_a_run_they_are_written_beside_its_results(tmp_path: Path) -> None:
             statistics(tmp_path, **keys)  # type: ignore[arg-type]
 
 
+def test_gaps_are_those_of_bodies_with_something_near() -> None:
+    samples = made(np.full((8, 3, 2), 0.5))
+    samples.gap[:, 1] = np.inf
+    samples.gap[3] = np.inf
+    np.testing.assert_allclose(samples.mean_gap[[0, 3]], [0.1, np.nan])
+    assert mean(samples.mean_gap).to_list() == [None, None]
+
+
 def test_a_single_body_has_none(tmp_path: Path) -> None:
     rigidfluid.run(dry_scene({}, ball([0.5, 0.5], [0.1, 0.0]), end=0.02, step=1e-2), tmp_path)
     with pytest.raises(OutputError, match="1 bodies that move"):
