@@ -65,7 +65,7 @@ class Samples:
         known = np.isfinite(self.gap)
         count = known.sum(axis=1)
         total = np.where(known, self.gap, 0.0).sum(axis=1)
-        return np.divide(total, count, out=np.full(len(count), np.nan), where=count > 0)
+        return np.asarray(np.divide(total, count, out=np.full(len(count), np.nan), where=count > 0))
 
     @property
     def fraction(self) -> float:
