@@ -105,3 +105,10 @@ def _brenner_terms(height: float, terms: int) -> tuple[float, np.ndarray, np.nda
     a, n = float(np.arccosh(1.0 + height)), np.arange(1, terms)
     n = n[(2 * n + 1) * a < 600.0]
     return a, n, 4.0 / 3.0 * np.sinh(a) * n * (n + 1) / ((2 * n - 1) * (2 * n + 3))
+
+
+def torque_of_twist(gap: float) -> float:
+    """Torque on a sphere that turns about the normal of a wall over 8πμr³ω, by gap over radius: Jeffery, Proc. Lond.
+    Math. Soc. 14 (1915) 327, doi:10.1112/plms/s2_14.1.327."""
+    a = float(np.arccosh(1.0 + gap))
+    return float(np.sum((np.sinh(a) / np.sinh(np.arange(1, int(40.0 / a) + 2) * a)) ** 3))

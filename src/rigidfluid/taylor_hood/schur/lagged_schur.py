@@ -10,6 +10,7 @@ from rigidfluid.core.model.ranks import ALONE
 from rigidfluid.taylor_hood.linear_solver.flexible_gmres import flexible_gmres
 from rigidfluid.taylor_hood.linear_solver.lagged_solver import LaggedSolver
 from rigidfluid.taylor_hood.schur.block_triangle import BlockTriangle
+from rigidfluid.taylor_hood.schur.films import Films
 from rigidfluid.taylor_hood.system.parts import Parts
 
 
@@ -25,15 +26,22 @@ class LaggedSchur(LaggedSolver[Parts]):
     def __init__(self, dimension: int) -> None:
         super().__init__(ALONE, dimension)
         self._triangle: BlockTriangle | None = None
+        self._films: Films | None = None
 
     def make(self, matrix: Parts) -> None:
-        self._triangle = BlockTriangle(matrix)
+        self._triangle, self._films = BlockTriangle(matrix), Films(matrix)
 
     def drop(self) -> None:
-        self._triangle = None
+        self._triangle = self._films = None
 
     def iterate(
         self, apply: Callable[[FloatArray], FloatArray], residual: FloatArray, tolerance: float, most: int
     ) -> tuple[FloatArray, int, bool]:
+        return flexible_gmres(apply, self._precondition, residual, tolerance, most, 2)
+
+    def _precondition(self, right_side: FloatArray) -> FloatArray:
         assert self._triangle is not None
-        return flexible_gmres(apply, self._triangle.solve, residual, tolerance, most, 2)
+        assert self._films is not None
+        found = self._triangle.solve(right_side)
+        self._films.correct(found, right_side)
+        return found

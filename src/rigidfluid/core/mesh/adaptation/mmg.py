@@ -78,7 +78,15 @@ def from_mmg(mmg: Any, dimension: int) -> Mesh:
     points = np.ascontiguousarray(mmg.get_vertices())
     marked = references > 0  # the facets of required cells come back too
     facets, references = facets[marked].astype(np.int64), references[marked].astype(np.int64)
-    return Mesh(points, cells.astype(np.int64), facets, references - 1)
+    return without_unused(Mesh(points, cells.astype(np.int64), facets, references - 1))
+
+
+def without_unused(mesh: Mesh) -> Mesh:
+    """The mesh without vertices that no cell has, of which MMG leaves one now and then."""
+    used = np.zeros(len(mesh.points), dtype=bool)
+    used[mesh.cells] = True
+    number = np.cumsum(used) - 1
+    return mesh if used.all() else Mesh(mesh.points[used], number[mesh.cells], number[mesh.facets], mesh.markers)
 
 
 def domain_corners(mesh: Mesh, bodies: int) -> IntArray:

@@ -29,7 +29,11 @@ GRADATIONS = (1.3, 1.4, 1.2)
 """Ratio of neighbouring edges that MMG may use: the first one, then the others where its mesh is not good."""
 
 GOOD_QUALITY = 0.3
-"""A re-made mesh is good, and the first one that is good is taken, when all its cells are above this quality."""
+"""A re-made mesh is good, and the first one that is good is taken, when all its cells but those in films are above
+this quality."""
+
+FLAT_IN_FILM = 1.0
+"""A cell must be flat where the gap is at most so wide beside its longest edge."""
 
 BISECTABLE = 4.0
 """Kept edges at most this many times longer than wanted are left to bisection; longer ones may cut through the gap."""
@@ -126,7 +130,7 @@ def best_remeshed(
         except MeshError as error:
             failures.append(error)
         else:
-            if lowest_quality(made[-1]) > GOOD_QUALITY:
+            if _lowest_outside_films(made[-1], fluid_domain) > GOOD_QUALITY:
                 break
     if not made:
         raise failures[0]
@@ -166,6 +170,17 @@ def rounded(mesh: Mesh) -> Mesh:
 def lowest_quality(mesh: Mesh) -> float:
     """Quality of the worst cell [1]."""
     return float(cell_quality(mesh.points, mesh.cells).min())
+
+
+def _lowest_outside_films(mesh: Mesh, fluid_domain: FluidDomain) -> float:
+    """Quality of the worst cell that is not as flat as the film it is in [1]."""
+    quality = cell_quality(mesh.points, mesh.cells)
+    bad = np.flatnonzero(quality <= GOOD_QUALITY)
+    corners = mesh.points[mesh.cells[bad]]
+    width = fluid_domain.gap_widths(corners.mean(axis=1))
+    longest = np.linalg.norm(corners[:, :, None] - corners[:, None], axis=-1).max(axis=(1, 2))
+    quality[bad[width <= FLAT_IN_FILM * longest]] = 1.0
+    return float(quality.min())
 
 
 def longest_relative_edge(mesh: Mesh, size_at: Callable[[FloatArray], FloatArray]) -> float:

@@ -12,6 +12,12 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.size.regions import Region
 
+ALONG_FILM = 0.12
+"""Longest edge wanted in a film over √(R gap), the length over which its pressure varies."""
+
+FINER_IN_FILMS = 0.125
+"""Least edge wanted in a film over the smallest size for a gap."""
+
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
@@ -40,11 +46,12 @@ class Sizes:
 
 
 def wanted_size(points: FloatArray, fluid_domain: FluidDomain, sizes: Sizes) -> FloatArray:
-    """Wanted edge length at points (N, d), h = min(h_open, max(h_min, (d₁ + d₂)/cells_per_gap)), (N,) [length].
+    """Wanted edge length at points (N, d), h = min(h_open, max(h_min, g/cells_per_gap)), g = d₁ + d₂, (N,) [length].
 
-    h_open is `size_away_from_gaps`, h_min `Sizes.smallest`, d₁ the distance to the nearest body, d₂ that to the next
-    body or the nearest wall, so that d₁ + d₂ equals the gap on the segment that joins two surfaces and is larger off
-    it. Two walls make no gap.
+    h_open is `size_away_from_gaps`, d₁ the distance to the nearest body, d₂ that to the next body or the nearest wall,
+    so that g equals the gap on the segment that joins two surfaces and is larger off it. Two walls make no gap. h_min
+    is `Sizes.smallest`, or ALONG_FILM √(R g) down to FINER_IN_FILMS of that, with R the least radius of curvature of a
+    body: cells may be flat in a film, but the pressure along it is to be resolved.
     """
     first, second = fluid_domain.two_nearest_bodies(points, reach_of_bodies(sizes))
     return size_between(points, first, second, fluid_domain, sizes)
@@ -58,8 +65,17 @@ def size_between(
     near = np.flatnonzero(first < 1.001 * sizes.cells_per_gap * open_size)  # elsewhere no gap is narrow
     gap = first[near] + np.minimum(second[near], fluid_domain.nearest_wall(points[near]))
     wanted = open_size.copy()
-    wanted[near] = np.minimum(open_size[near], np.maximum(gap / sizes.cells_per_gap, sizes.smallest))
+    least = _least_in_gaps(gap, fluid_domain, sizes)
+    wanted[near] = np.minimum(open_size[near], np.maximum(gap / sizes.cells_per_gap, least))
     return wanted
+
+
+def _least_in_gaps(gap: FloatArray, fluid_domain: FluidDomain, sizes: Sizes) -> FloatArray:
+    """h_min in gaps of these widths (N,), with the least radius of curvature of all bodies that tell theirs."""
+    radii = [radius for radius in (body.least_radius for body in fluid_domain.bodies) if radius is not None]
+    if not radii:
+        return np.full_like(gap, sizes.smallest)
+    return np.clip(ALONG_FILM * np.sqrt(min(radii) * gap), FINER_IN_FILMS * sizes.smallest, sizes.smallest)
 
 
 def size_away_from_gaps(points: FloatArray, fluid_domain: FluidDomain, sizes: Sizes) -> FloatArray:

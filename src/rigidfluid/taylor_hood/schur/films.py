@@ -1,0 +1,77 @@
+"""The thin films between surfaces, solved by factors of the equations there."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.linear_solver.factorization import factorise
+from rigidfluid.taylor_hood.system.parts import Parts
+
+FLAT = 0.15
+"""Least height of a cell over its longest edge, below which it is in a film."""
+
+RINGS = 9
+"""Rings of edges around flat cells that are solved with them: there the film is thin too."""
+
+
+class Films:
+    """Solution of the coupled equations in films, all else held: of pressures in and near flat cells, and of the
+    velocities around them.
+
+    In a film of thickness h the Schur complement of a pressure that varies over a length L along it is (h/L)²/12 of the
+    pressures' mass matrix, so that `CahouetChabard` alone needs the more iterations the thinner it is.
+
+    Parameters
+    ----------
+    parts : Parts
+        Ingredients of the coupled matrix.
+    """
+
+    def __init__(self, parts: Parts) -> None:
+        constraint = parts.constraint
+        numbering = constraint.surfaces.numbering
+        vertices = vertices_of_films(numbering.cells, parts.points[: numbering.vertices])
+        self._which = _unknowns_of(parts, _with_rings(numbering, vertices))
+        self._rows = constraint.transposed[self._which] @ parts.system_matrix @ constraint.matrix
+        self._factors = factorise(self._rows[:, self._which].tocsr()) if len(self._which) else None
+
+    def correct(self, found: FloatArray, right_side: FloatArray) -> None:
+        """Add to ``found`` (unknowns,) what the films lack of a solution for ``right_side``."""
+        if self._factors is not None:
+            found[self._which] += self._factors.solve(right_side[self._which] - self._rows @ found)
+
+
+def vertices_of_films(cells: IntArray, points: FloatArray) -> IntArray:
+    """Vertices (v,) of all cells that are less high than FLAT times their longest edge, ascending."""
+    corners = points[cells]
+    longest = np.linalg.norm(corners[:, :, None] - corners[:, None], axis=-1).max(axis=(1, 2))
+    heights = 1.0 / np.linalg.norm(_slopes(corners), axis=-1).max(axis=1)
+    return np.unique(cells[heights < FLAT * longest])
+
+
+def _slopes(corners: FloatArray) -> FloatArray:
+    """Gradients (M, d+1, d) of the linear functions of cells; each has the length of 1 over a height."""
+    slopes = np.linalg.inv(np.moveaxis(corners[:, 1:] - corners[:, :1], 1, 2))
+    return np.concatenate([-slopes.sum(axis=1, keepdims=True), slopes], axis=1)
+
+
+def _with_rings(numbering: Numbering, vertices: IntArray) -> IntArray:
+    """The ``vertices`` (v,) and all up to RINGS edges from them, ascending."""
+    chosen = np.zeros(numbering.vertices, dtype=bool)
+    chosen[vertices] = True
+    for _ in range(RINGS if len(vertices) else 0):
+        chosen[numbering.edges[chosen[numbering.edges].any(axis=1)]] = True
+    return np.flatnonzero(chosen)
+
+
+def _unknowns_of(parts: Parts, vertices: IntArray) -> IntArray:
+    """The unknowns that are pressures at ``vertices``, or velocities in the cells around them, ascending."""
+    constraint, numbering = parts.constraint, parts.constraint.surfaces.numbering
+    d, chosen = numbering.dimension, np.zeros(numbering.unknowns, dtype=bool)
+    chosen[numbering.nodes * d + vertices] = True
+    around = np.isin(numbering.cells, vertices).any(axis=1)
+    nodes = np.unique(numbering.cell_nodes[around])
+    chosen[(nodes[:, None] * d + np.arange(d)).ravel()] = True
+    return constraint.free_columns[chosen[constraint.free_unknowns]]

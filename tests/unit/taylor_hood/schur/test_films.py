@@ -1,0 +1,54 @@
+"""Films thinner than cells, solved by factors of their own: iterations stay few and resistances exact."""
+
+import numpy as np
+import pytest
+from bispherical import resistance
+from paths import SCENES
+from published import torque_of_twist
+
+from rigidfluid.core.case.load import load_scene
+from rigidfluid.core.run.simulation import Simulation
+from rigidfluid.taylor_hood.linear_solver.lagged_solver import LaggedSolver
+from rigidfluid.taylor_hood.schur.films import vertices_of_films
+
+SPEED = 1e-6
+
+
+def test_only_flat_cells_make_a_film() -> None:
+    corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.1], [0.0, 0.0, -1.0]])
+    cells = np.array([[0, 1, 2, 3], [0, 2, 1, 4]])
+    np.testing.assert_array_equal(vertices_of_films(cells, corners), [0, 1, 2, 3])
+    assert not len(vertices_of_films(cells[1:], corners))
+
+
+def torques(gap: float, mesh: list[str], *spins: tuple[list[float], str]) -> list[float]:
+    """Of a sphere of radius 1 that turns at a wall about axes, over μr³ω."""
+    placed = [f"body.0.position=[0.0, 0.0, {1.0 + gap}]", "mesh.size_body=0.5", "time.end=1.0", "fluid.solver=schur"]
+    simulation, found = Simulation(load_scene(SCENES / "squeezed_film.toml", [*placed, *mesh])), []
+    for spin, axis in spins:
+        simulation.prescribe("sphere", [0.0, 0.0, 0.0], [SPEED * each for each in spin])
+        simulation.step()
+        found.append(float(simulation.history.bodies[axis][-1]) / SPEED)
+    return found
+
+
+TURN, TWIST = ([0.0, 1.0, 0.0], "ty"), ([0.0, 0.0, 1.0], "tz")
+
+
+def test_turning_and_twisting_beside_a_wall() -> None:
+    exact = [-resistance(0.1, np.inf)[1, 1], -8.0 * np.pi * torque_of_twist(0.1)]
+    assert torques(0.1, [], TURN, TWIST) == pytest.approx(exact, rel=0.01)
+
+
+@pytest.mark.long
+def test_a_thin_film_takes_few_iterations(monkeypatch: pytest.MonkeyPatch) -> None:
+    counts, solve = [], LaggedSolver.solve
+
+    def counting(self, *given):
+        found = solve(self, *given)
+        counts.append(found[1])
+        return found
+
+    monkeypatch.setattr(LaggedSolver, "solve", counting)
+    torques(1e-3, ["mesh.refinements=4"], TURN)
+    assert max(counts) < 50
