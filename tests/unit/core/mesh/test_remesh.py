@@ -20,13 +20,14 @@ from mesh_tools import (
 from rigidfluid.core.mesh.adaptation import remesh as module
 from rigidfluid.core.mesh.adaptation.kept_cells import LAYERS
 from rigidfluid.core.mesh.adaptation.mesh_motion import MeshMotion
+from rigidfluid.core.mesh.adaptation.mmg import without_unused
 from rigidfluid.core.mesh.adaptation.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation import refine_surface as surface
 from rigidfluid.core.mesh.generation.meshing import generate_mesh
 from rigidfluid.core.mesh.generation.refine_surface import long_edges, refine_surface
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
-from rigidfluid.core.mesh.size.size_field import Sizes, wanted_size
+from rigidfluid.core.mesh.size.size_field import ALONG_FILM, Sizes, wanted_size
 from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.errors import MeshError
 
@@ -169,7 +170,8 @@ def test_the_wanted_size_follows_its_formula():
     expected = [0.01, 0.01 + 0.2 * (0.9 - 2 * RADIUS - 2e-3), 0.15, 1e-3, 0.01 + 0.2 * beside]
     np.testing.assert_allclose(wanted_size(points, FluidDomain([DISK], pose, BOX, walls), FINE), expected, rtol=1e-12)
     closest = wanted_size(np.array([[1.0, 0.0]]), FluidDomain([DISK], upright([1, RADIUS + 1e-6]), BOX, walls), FINE)
-    assert closest == 0.01 / 64
+    assert closest == pytest.approx(ALONG_FILM * np.sqrt(RADIUS * 1e-6), rel=1e-6)
+    assert 0.01 / 64 / 8 < closest < 0.01 / 64
 
 
 def test_two_bodies_make_a_gap_and_walls_that_do_not_repel_make_none():
@@ -296,3 +298,11 @@ def test_mmg_gets_a_second_chance_with_another_gradation(monkeypatch):
     monkeypatch.setattr(module, "run_mmg", fails_once)
     assert_valid(remesh(mesh, FluidDomain([DISK], pose, BOX, walls), COARSE), [DISK], pose, LOWER, UPPER)
     assert len(set(gradations)) == 2
+
+
+def test_a_vertex_that_no_cell_has_is_left_out():
+    points, cells = np.array([[0.0, 0.0], [9.0, 9.0], [1.0, 0.0], [0.0, 1.0]]), np.array([[0, 2, 3]])
+    mesh = without_unused(Mesh(points, cells, np.array([[2, 3]]), np.array([0])))
+    np.testing.assert_array_equal(mesh.points, points[[0, 2, 3]])
+    np.testing.assert_array_equal(mesh.cells, [[0, 1, 2]])
+    np.testing.assert_array_equal(mesh.facets, [[1, 2]])

@@ -43,7 +43,7 @@ def test_cells_in_a_film_resolve_the_pressure_along_it() -> None:
     """Down to an eighth of the smallest size for a gap; wider gaps ask for no finer cells than before."""
     gap, sizes = np.array([1e-2, 1e-3, 1e-4, 1e-7]), Sizes(6.0, 0.25, refinements=5)
     domain = box([-9.0, 0.0], [9.0, 9.0])
-    walls = [wall for wall in box_walls([-9.0, 0.0], [9.0, 9.0], 1)]
+    walls = box_walls([-9.0, 0.0], [9.0, 9.0], 1)
     wanted = [
         wanted_size(
             np.array([[0.0, 0.5 * each]]), FluidDomain([ball(1.0)], upright([0.0, 1.0 + each]), domain, walls), sizes
