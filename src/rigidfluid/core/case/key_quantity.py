@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from typing import Any
 
 from pydantic import BaseModel
 
 from rigidfluid.core.case.part_tables import PART_TABLES
+from rigidfluid.core.scene.quantity import described_quantity
 from rigidfluid.core.scene.validation import fields_by_key
 from rigidfluid.registry import Registry
 
@@ -16,8 +16,7 @@ from rigidfluid.registry import Registry
 def key_quantity(scene: BaseModel, key: str) -> str:
     """Quantity of a scene's key ("body.0.density"), as "mass/length^d"; empty where it has none."""
     described = list(_descriptions(scene, key))
-    quantity = re.search(r"\[([^\]]+)\]$", described[-1]) if described else None
-    return quantity[1] if quantity else ""
+    return described_quantity(described[-1]) if described else ""
 
 
 def _descriptions(scene: BaseModel, key: str) -> Iterator[str]:

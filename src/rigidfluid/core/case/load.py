@@ -13,6 +13,7 @@ from rigidfluid.core.case.mechanisms import placed_mechanisms
 from rigidfluid.core.case.part_tables import check_part_tables
 from rigidfluid.core.case.remaining import remaining_tables
 from rigidfluid.core.case.scene_model import model_of, scene_body, scene_domain
+from rigidfluid.core.case.swarms import has_seeds, told_by_swarms, with_seeded_bodies
 from rigidfluid.core.case.time_factor import read_time_tables
 from rigidfluid.core.geometry.value_types import describe
 from rigidfluid.core.model.memory import told_memory
@@ -64,11 +65,30 @@ def scene_of_results(data: Mapping[str, Any]) -> Scene:
 
     It is read like `scene_from_dict` does, but its backend may lack packages here, and then cannot run it.
     """
-    mesh = data.get("mesh")
-    if not isinstance(mesh, Mapping) or mesh.get("size_body") != AUTO:
+    if not has_seeds(data):
+        return _sized(data)
+    tables = tables_now(data)
+    seeded = with_seeded_bodies(tables, _tables(_with_any_size(tables)), Registry.load())
+    with told_by_swarms(tables, seeded):
+        return _sized(seeded)
+
+
+def _sized(data: Mapping[str, Any]) -> Scene:
+    """Scene of tables, its cells at bodies as small as the flow demands where that is asked for."""
+    if not _asks_for_size(data):
         return _checked(data)
-    coarse = _checked({**data, "mesh": {**mesh, "size_body": mesh.get("size")}})
-    return _checked({**data, "mesh": {**mesh, "size_body": auto_size_body(coarse)}})
+    return _checked({**data, "mesh": {**data["mesh"], "size_body": auto_size_body(_checked(_with_any_size(data)))}})
+
+
+def _asks_for_size(data: Mapping[str, Any]) -> bool:
+    mesh = data.get("mesh")
+    return isinstance(mesh, Mapping) and mesh.get("size_body") == AUTO
+
+
+def _with_any_size(data: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Tables with coarse cells at bodies in place of such as the flow demands."""
+    mesh = data.get("mesh")
+    return {**data, "mesh": {**mesh, "size_body": mesh.get("size")}} if mesh and _asks_for_size(data) else data
 
 
 def _checked(data: Mapping[str, Any]) -> Scene:

@@ -14,6 +14,7 @@ from rigidfluid.core.scene.domain_table import DomainTable
 from rigidfluid.core.scene.fluid_table import FluidTable
 from rigidfluid.core.scene.joint_tables import JointTable
 from rigidfluid.core.scene.mesh_tables import SizeFieldTable
+from rigidfluid.core.scene.swarm_tables import SwarmShapeTable
 from rigidfluid.core.scene.validation import fields_by_key
 from rigidfluid.registry import (
     BODY,
@@ -31,6 +32,7 @@ from rigidfluid.registry import (
 PART_TABLES: tuple[tuple[str, Kind[Any], Any], ...] = (
     ("fluid", FLUID_BACKEND, FluidTable),
     ("body", BODY, BodyTable),
+    ("swarm.shape", BODY, SwarmShapeTable),
     ("mechanism", MECHANISM, MechanismTable),
     ("contact", DETECTOR, ContactTable),
     ("contact", FORCE_LAW, ContactTable),
@@ -70,11 +72,14 @@ def _options(table: Mapping[str, Any], model: Any) -> dict[str, Any]:
 
 
 def _tables(data: Mapping[str, Any], place: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    """All tables at a place of a scene, each with its field."""
-    found: Any = data
+    """All tables at a place of a scene, also in tables of lists, each with its field."""
+    found: list[tuple[str, Any]] = [("", data)]
     for key in place.split("."):
-        found = found.get(key) if isinstance(found, Mapping) else None
-    entries = [(place, found)] if isinstance(found, Mapping) else []
-    if isinstance(found, list):
-        entries = [(f"{place}.{number}", entry) for number, entry in enumerate(found)]
-    yield from ((at, table) for at, table in entries if isinstance(table, Mapping))
+        inside = [(f"{at}.{key}" if at else key, table.get(key)) for at, table in found if isinstance(table, Mapping)]
+        found = [one for at, value in inside for one in _entries(at, value)]
+    yield from ((at, table) for at, table in found if isinstance(table, Mapping))
+
+
+def _entries(at: str, value: Any) -> list[tuple[str, Any]]:
+    """A value, or the entries of a list, each with its field."""
+    return [(f"{at}.{n}", entry) for n, entry in enumerate(value)] if isinstance(value, list) else [(at, value)]

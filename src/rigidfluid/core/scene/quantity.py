@@ -2,6 +2,14 @@
 
 from __future__ import annotations
 
+import re
+
+
+def described_quantity(description: str) -> str:
+    """Quantity at the end of a key's description, "length" of "Radius of the ball [length]"; empty without one."""
+    found = re.search(r"\[([^\]]+)\]$", description)
+    return found[1] if found else ""
+
 
 def plain_quantity(quantity: str, dimension: int) -> str:
     """A quantity without powers of the dimension d: "mass/area" for "mass/length^d" in 2D."""

@@ -15,6 +15,7 @@ from rigidfluid.core.scene.fluid_table import FluidTable
 from rigidfluid.core.scene.joint_tables import JointTable
 from rigidfluid.core.scene.mesh_tables import MeshTable
 from rigidfluid.core.scene.run_tables import OutputTable, TimeTable
+from rigidfluid.core.scene.swarm_tables import SwarmTable
 from rigidfluid.core.scene.table import Table
 from rigidfluid.core.scene.vectors import DIMENSION
 from rigidfluid.described import Described, first_names
@@ -53,6 +54,7 @@ class Scene(Described, Table):
         "are walls",
     )
     body: tuple[BodyTable, ...] = ()
+    swarm: tuple[SwarmTable, ...] = ()
     mechanism: tuple[MechanismTable, ...] = ()
     joint: tuple[JointTable, ...] = ()
     contact: ContactTable = ContactTable()
@@ -113,7 +115,7 @@ class Scene(Described, Table):
         scene."""
         # Without keys that came later a scene is the same as before there were such, and its checkpoints go on.
         left_out: dict[str, Any] = {
-            name: True for name in ("interaction", "mechanism", "joint") if not getattr(self, name)
+            name: True for name in ("interaction", "mechanism", "joint", "swarm") if not getattr(self, name)
         }
         if self.fluid.initial == "rest":
             left_out["fluid"] = {"initial"}

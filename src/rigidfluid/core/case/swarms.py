@@ -1,0 +1,81 @@
+"""Swarms of a scene become bodies of its own, before the scene as a whole is checked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from rigidfluid.core.case.mechanisms import placed_mechanisms
+from rigidfluid.core.case.scene_model import scene_body, scene_domain
+from rigidfluid.core.nested.placing import initial_pose
+from rigidfluid.core.scene.all_errors import all_told
+from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.seeding.draws import Draws
+from rigidfluid.core.seeding.placement import Others
+from rigidfluid.core.seeding.seed import seed
+from rigidfluid.core.setup.placed_bodies import PlacedBodies
+from rigidfluid.errors import PluginError, SceneError
+from rigidfluid.registry import Registry
+
+
+def has_seeds(data: Mapping[str, Any]) -> bool:
+    """Tell whether tables have a swarm that is not seeded yet."""
+    swarms = data.get("swarm")
+    return isinstance(swarms, list) and any(isinstance(one, Mapping) and "seeded" not in one for one in swarms)
+
+
+def with_seeded_bodies(data: Mapping[str, Any], scene: Scene, registry: Registry) -> dict[str, Any]:
+    """Tables of a ``scene`` with the bodies of its swarms after its own, swarm by swarm; each swarm avoids those before.
+
+    Raises SceneError or PluginError for swarms that are wrong or find no room, and for a domain and bodies of which
+    nothing can be made.
+    """
+    others, domain = _start(scene, registry)
+    bodies, swarms = list(data.get("body", [])), []
+    for number, table in enumerate(scene.swarm):
+        record = table.seeded
+        if record is None:
+            found = seed(table, f"swarm.{number}", Draws(scene.scene.seed, number), domain, others, registry)
+            bodies += found.tables
+            record, others = found.record, found.bodies
+        swarms.append({**data["swarm"][number], "seeded": record.model_dump()})
+    return {**data, "body": bodies, "swarm": swarms}
+
+
+def _start(scene: Scene, registry: Registry) -> tuple[Others, Any]:
+    """Bodies that are there before all swarms, and the domain."""
+    with all_told() as ask:
+        domain = ask(scene_domain, scene.domain, registry, scene.dimension)
+        mechanisms = ask(placed_mechanisms, scene.mechanism, registry, scene.dimension)
+        bodies = [ask(scene_body, table, f"body.{n}", registry, scene.dimension) for n, table in enumerate(scene.body)]
+    placed = PlacedBodies(domain, tuple(bodies), mechanisms, registry).all_bodies
+    return Others(tuple(body.shape for body in placed), initial_pose(placed, scene.dimension)), domain
+
+
+@contextmanager
+def told_by_swarms(before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[None]:
+    """Name, in errors of bodies that were seeded, the swarm and the body, by the tables before and after seeding."""
+    try:
+        yield
+    except (SceneError, PluginError) as error:
+        owners = list(_owners(before, after))
+        raise error.renamed(lambda subject: _renamed(subject, owners)) from None
+
+
+def _owners(before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[str]:
+    """Place of each body that messages name: of a seeded one its swarm and name."""
+    own = len(before.get("body", ()))
+    yield from (f"body.{number}" for number in range(own))
+    swarms = after.get("swarm", ())
+    new = [n for n, one in enumerate(swarms) if "seeded" not in before["swarm"][n] for _ in range(one["seeded"]["number"])]
+    for number, body in zip(new, after["body"][own:], strict=True):
+        yield f"swarm.{number}, body {body['name']!r}"
+
+
+def _renamed(subject: str, owners: Sequence[str]) -> str:
+    key, _, rest = subject.partition(".")
+    number, _, rest = rest.partition(".")
+    if key != "body" or not number.isdecimal() or int(number) >= len(owners):
+        return subject
+    return f"{owners[int(number)]}.{rest}" if rest else owners[int(number)]

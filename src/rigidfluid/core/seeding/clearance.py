@@ -1,0 +1,100 @@
+"""Gaps of bodies to each other and to walls that are less than they should be."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from rigidfluid.core.contact.path.detector_choice import exact_detector
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.piece import Piece
+from rigidfluid.core.geometry.surface import Surface
+from rigidfluid.core.geometry.wall import Wall
+from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.detector import Detector
+from rigidfluid.core.model.types import Pose
+from rigidfluid.registry import Registry
+
+_DEAR = 1e4
+"""Cost of a detector, as `Detector.cost`, from which on it is too slow to be asked hundreds of times."""
+
+
+class Gaps(NamedTuple):
+    """Gaps (m,) of bodies ``a`` (m,) to others ``b``, -1 of walls: where they are nearest on a and on b, ``point_a`` and
+    ``point_b`` (m, d), and the ``normal`` (m, d) from b to a [length]."""
+
+    a: IntArray
+    b: IntArray
+    point_a: FloatArray
+    point_b: FloatArray
+    normal: FloatArray
+    gap: FloatArray
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """Surfaces around a swarm: the ``pieces`` of the domain's boundary, and the ``surfaces`` of its region; the parts
+    that are installed."""
+
+    pieces: tuple[Piece, ...]
+    surfaces: tuple[Surface, ...]
+    registry: Registry
+
+    @property
+    def all(self) -> tuple[Surface, ...]:
+        """All of them."""
+        return (*(piece.shape for piece in self.pieces), *self.surfaces)
+
+    def parted(self, bodies: Sequence[Body]) -> tuple[type[Detector], tuple[Surface, ...], tuple[Surface, ...]]:
+        """A detector that is exact for bodies, the surfaces that it is exact for too, and the others, to which the
+        bodies' bounding balls keep their gaps."""
+        inner = [Piece(f"region {number}", surface, np.nan) for number, surface in enumerate(self.surfaces)]
+        flat = [piece for piece in inner if piece.shape.plane]
+        curved = tuple(piece.shape for piece in inner if not piece.shape.plane)
+        detector = exact_detector(bodies, [*self.pieces, *flat], self.registry)
+        taken = [*self.pieces, *flat]
+        if detector.cost > _DEAR:
+            taken = [piece for piece in taken if piece.shape.plane]
+            curved += tuple(piece.shape for piece in self.pieces if not piece.shape.plane)
+            detector = exact_detector(bodies, taken, self.registry)
+        return detector, tuple(piece.shape for piece in taken), curved
+
+
+class Clearance:
+    """Gaps of ``bodies``, of which the first ``moving`` ones are looked at, to each other and to what is around."""
+
+    def __init__(self, bodies: Sequence[Body], moving: int, around: Surroundings) -> None:
+        detector, walls, self._curved = around.parted(bodies)
+        count = len(bodies)
+        placed = [Wall(count + number, str(number), shape) for number, shape in enumerate(walls)]
+        self._detector = detector(detector.Options(), bodies, placed)
+        self._count, self._moving = count, moving
+        self._bounds = np.array([body.bounding_radius for body in bodies[:moving]])
+
+    def within(self, pose: Pose, reach: float) -> Gaps:
+        """All gaps up to ``reach`` [length] at a ``pose`` of all bodies."""
+        found = self._detector.detect(pose, None, reach)
+        wall = found.body_b >= self._count
+        told = Gaps(
+            found.body_a, np.where(wall, -1, found.body_b), found.point_a, found.point_b, found.normal, found.gap
+        )
+        parts = [_rows(told, found.body_a < self._moving), *self._at_curved(pose.position[: self._moving], reach)]
+        return Gaps(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+
+    def _at_curved(self, position: FloatArray, reach: float) -> list[Gaps]:
+        parts = []
+        for surface in self._curved:
+            gap = surface.signed_distance(position) - self._bounds
+            near = np.flatnonzero(gap <= reach)
+            normal = surface.normal(position[near])
+            point_a = position[near] - self._bounds[near, None] * normal
+            no_body = np.full(len(near), -1)
+            parts.append(Gaps(near, no_body, point_a, point_a - gap[near, None] * normal, normal, gap[near]))
+        return parts
+
+
+def _rows(gaps: Gaps, chosen: BoolArray) -> Gaps:
+    return Gaps(*(column[chosen] for column in gaps))

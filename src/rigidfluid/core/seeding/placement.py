@@ -1,0 +1,139 @@
+"""Places and orientations of a swarm: thin ones by random insertion, dense ones by growth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.mechanics.shapes import inscribed_radius
+from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.types import Pose
+from rigidfluid.core.seeding.clearance import Clearance, Surroundings
+from rigidfluid.core.seeding.draws import Draws
+from rigidfluid.core.seeding.growth import Growth
+from rigidfluid.core.seeding.insertion import Insertion
+from rigidfluid.core.seeding.regions import Region
+from rigidfluid.core.seeding.swarm import Swarm
+from rigidfluid.errors import SceneError
+
+_THIN = {2: 0.45, 3: 0.3}
+"""Fraction of the region that bounding balls fill, by dimension, up to which bodies are inserted in their full size [1].
+Insertion ends at .547 in 2D and .38 in 3D (J. Feder 1980)."""
+
+_START = {2: 0.25, 3: 0.15}
+"""That which small bodies fill from which growth starts [1]."""
+
+_SMALLER, _SMALLEST = 0.8, 0.05
+"""Factor of the size where small bodies do not find places either, and the least size [1]."""
+
+_SAMPLES = 4096
+"""Number of points by which a region is compared with the domain."""
+
+
+@dataclass(frozen=True)
+class Others:
+    """Bodies that are there before a swarm, with their ``pose``."""
+
+    bodies: tuple[Body, ...]
+    pose: Pose
+
+    def joined(self, bodies: tuple[Body, ...], pose: Pose) -> Others:
+        """These and further bodies."""
+        position = np.concatenate([self.pose.position, pose.position])
+        return Others((*self.bodies, *bodies), Pose(position, np.concatenate([self.pose.orientation, pose.orientation])))
+
+
+@dataclass(frozen=True)
+class Placement:
+    """Places for the bodies of a ``swarm`` in a ``region`` with ``surroundings``, among ``others``; raises SceneError
+    where there is not enough room."""
+
+    swarm: Swarm
+    region: Region
+    surroundings: Surroundings
+    others: Others
+    draws: Draws
+
+    def placed(self, orientation: FloatArray, turning: bool) -> tuple[Pose, Literal["insertion", "growth"]]:
+        """Pose of the bodies, and how it was found, from orientations (n, q), which growth changes if ``turning``."""
+        self._refuse_overfull()
+        self._refuse_narrow()
+        scale = self._first_scale()
+        while scale > _SMALLEST:
+            position = self._inserted(scale)
+            if position is not None:
+                start = Pose(position, orientation)
+                return (start, "insertion") if scale == 1.0 else (self._grown(start, scale, turning), "growth")
+            scale *= _SMALLER
+        raise self._stuck(0.0)
+
+    def _first_scale(self) -> float:
+        radii, dimension = self.swarm.bounding_radii, self.swarm.dimension
+        ball = np.pi if dimension == 2 else 4.0 / 3.0 * np.pi
+        filled = ball * float(np.sum((radii + 0.5 * self.swarm.gap) ** dimension)) / self.region.volume
+        return 1.0 if filled <= _THIN[dimension] else (_START[dimension] / filled) ** (1.0 / dimension)
+
+    def _inserted(self, scale: float) -> FloatArray | None:
+        swarm, others = self.swarm, self.others
+        bounds = np.array([body.bounding_radius for body in others.bodies])
+        insertion = Insertion(self.region, self.surroundings, self.draws)
+        return insertion.places(scale * swarm.bounding_radii, scale * swarm.gap, others.pose.position, bounds)
+
+    def _grown(self, start: Pose, scale: float, turning: bool) -> Pose:
+        swarm, count = self.swarm, len(self.swarm)
+        growth = Growth(swarm.bodies, self.others.bodies, self.surroundings, swarm.gap, turning)
+        whole = Others((), start).joined((), self.others.pose).pose
+        pose, reached = growth.grown(whole, scale)
+        if reached < 1.0:
+            raise self._stuck(reached)
+        return Pose(pose.position[:count], pose.orientation[:count])
+
+    def _stuck(self, scale: float) -> SceneError:
+        """Error for bodies that have no room beyond this size."""
+        swarm = self.swarm
+        asked = swarm.volume / self.region.volume
+        key = "number" if swarm.table.fraction is None else "fraction"
+        found = f"{len(swarm)} bodies, {asked:.3g} of the region's volume"
+        allowed = f"up to about {asked * scale**swarm.dimension:.3g}, which was reached with gaps in proportion"
+        remedy = f"Ask for fewer bodies, a smaller `gap` than {swarm.gap:.3g}, or another `scene.seed`."
+        return SceneError(f"{swarm.at}.{key}", found, allowed if scale else "fewer, as they found no places", remedy)
+
+    def _refuse_overfull(self) -> None:
+        asked = self.swarm.volume / self.region.volume
+        if asked >= 1.0:
+            key = "number" if self.swarm.table.fraction is None else "fraction"
+            found = f"{len(self.swarm)} bodies, {asked:.3g} of the region's volume"
+            raise SceneError(f"{self.swarm.at}.{key}", found, "bodies that fill less than the region", "Ask for fewer.")
+
+    def _refuse_narrow(self) -> None:
+        """Refuse gaps and bodies for which the region is too narrow even where nothing else is."""
+        lower, upper = self.region.extent
+        half = 0.5 * float(np.min(upper - lower))
+        radius = max(map(inscribed_radius, self.swarm.bodies))
+        if radius + self.swarm.gap > half:
+            found = f"{self.swarm.gap:.3g} on both sides of a body {2.0 * radius:.3g} thick"
+            allowed = f"together at most the width of the region, {2.0 * half:.3g}"
+            raise SceneError(f"{self.swarm.at}.gap", found, allowed, "Make the gap or the bodies smaller.")
+
+
+def refuse_outside(region: Region, around: Region, at: str, draws: Draws) -> None:
+    """Raise SceneError for a ``region`` that has no part in the one ``around``."""
+    lower, upper = region.extent
+    points = lower + (upper - lower) * draws.uniform(_SAMPLES, len(lower))
+    if not around.contains(points[region.contains(points)]).any():
+        found = f"a region from {lower.tolist()} to {upper.tolist()} outside the domain"
+        low, high = (corner.tolist() for corner in around.extent)
+        raise SceneError(at, found, f"a region inside the domain from {low} to {high}", "Move it.")
+
+
+def smallest_gap(bodies: tuple[Body, ...], pose: Pose, others: Others, around: Surroundings, start: float) -> float:
+    """Smallest gap of bodies to each other, to others and to the surfaces around, looked for from ``start`` on
+    [length]."""
+    whole = Others(bodies, pose).joined(others.bodies, others.pose)
+    clearance, reach = Clearance(whole.bodies, len(bodies), around), start
+    while not len(gaps := clearance.within(whole.pose, reach).gap):
+        reach *= 4.0
+    return float(gaps.min())

@@ -1,0 +1,147 @@
+"""From the table of a swarm to tables of bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.model.types import Pose
+from rigidfluid.core.nested.placing import check_orientation
+from rigidfluid.core.scene.swarm_tables import SeededTable, SwarmTable, TableSizes
+from rigidfluid.core.seeding.clearance import Surroundings
+from rigidfluid.core.seeding.draws import Draws
+from rigidfluid.core.seeding.listed_bodies import Row, columns, listed_bodies
+from rigidfluid.core.seeding.placement import Others, Placement, refuse_outside, smallest_gap
+from rigidfluid.core.seeding.regions import DomainRegion, region_of
+from rigidfluid.core.seeding.swarm import Swarm, swarm_of, with_fraction, with_rows
+from rigidfluid.errors import SceneError
+from rigidfluid.registry import Registry
+
+
+
+
+@dataclass(frozen=True)
+class Seeded:
+    """Seeded bodies: their ``tables`` as of the scene's bodies, the ``record`` of the swarm, and all ``bodies`` that are
+    there now."""
+
+    tables: tuple[dict[str, Any], ...]
+    record: SeededTable
+    bodies: Others
+
+
+def seed(table: SwarmTable, at: str, draws: Draws, domain: Domain, others: Others, registry: Registry) -> Seeded:
+    """Bodies of a swarm in a domain among ``others``; raises SceneError or PluginError for what is wrong with its
+    table, and where there is not enough room."""
+    _check_table(table, at, domain.dimension)
+    whole, region = DomainRegion(domain), region_of(table.region, domain, f"{at}.region", registry)
+    if table.region is not None:
+        refuse_outside(region, whole, f"{at}.region", draws)
+    surroundings = Surroundings(domain.pieces, () if table.region is None else tuple(region.surfaces), registry)
+    swarm, rows = swarm_of(table, at, domain.dimension, draws, registry), []
+    if table.file is not None:
+        rows = listed_bodies(table.file, f"{at}.file", domain.dimension)
+        swarm = with_rows(swarm, rows)
+    elif table.fraction is not None:
+        swarm = with_fraction(swarm, table.fraction, region.volume)
+    else:
+        assert table.number is not None
+        swarm = swarm.first(table.number)
+    orientation, turning = _orientations(swarm, draws)
+    if rows:
+        position, orientation = _listed(rows, columns(swarm.dimension)[:2], orientation)
+        pose, way = Pose(position, orientation), "file"
+    else:
+        pose, way = Placement(swarm, region, surroundings, others, draws).placed(orientation, turning)
+    gap = smallest_gap(swarm.bodies, pose, others, surroundings, 2.0 * swarm.gap)
+    record = SeededTable(number=len(swarm), fraction=swarm.volume / region.volume, gap=gap, way=way)
+    return Seeded(tuple(_tables(swarm, pose, rows, draws)), record, others.joined(swarm.bodies, pose))
+
+
+def _check_table(table: SwarmTable, at: str, dimension: int) -> None:
+    check_orientation(table, dimension, at)
+    given = [key for key in ("number", "fraction", "file") if getattr(table, key) is not None]
+    if len(given) != 1:
+        found = " and ".join(given) or "none of number, fraction and file"
+        remedy = f"Leave {given[-1]} out." if given else "Say how many bodies there are."
+        raise SceneError(f"{at}.{given[-1] if given else 'number'}", found, "one of number, fraction and file", remedy)
+    if table.file is not None and (placed := [key for key in ("region", "gap") if getattr(table, key) is not None]):
+        remedy = "Leave it out: the file says where bodies are."
+        raise SceneError(f"{at}.{placed[0]}", f"{placed[0]} together with file", "one of them", remedy)
+    if table.tilt and table.angle is None and table.orientation is None:
+        key = "angle" if dimension == 2 else "orientation"
+        remedy = f"Give {key}, or leave tilt out: then all orientations are equally likely."
+        raise SceneError(f"{at}.tilt", f"{table.tilt:g} from no {key}", f"tilt from an {key}", remedy)
+    size = table.size
+    if size is not None and not isinstance(size, TableSizes) and not size.least <= size.greatest:
+        allowed = f"at least size.least = {size.least:g}"
+        raise SceneError(f"{at}.size.greatest", size.greatest, allowed, "Swap or correct them.")
+    if isinstance(size, TableSizes) and not any(share for _, share in size.rows):
+        raise SceneError(f"{at}.size.rows", "shares of 0", "a share above 0 in a row", "Correct them.")
+
+
+def _orientations(swarm: Swarm, draws: Draws) -> tuple[FloatArray, bool]:
+    """Orientations (n, q), and whether bodies may rotate to find room: not where they are given, nor balls."""
+    table, dimension = swarm.table, swarm.dimension
+    if table.angle is None and table.orientation is None:
+        round_ones = all(shape.radius is not None for shape in swarm.shapes)
+        return draws.orientations(len(swarm), dimension), not round_ones
+    given = np.array([table.angle] if dimension == 2 else table.orientation, dtype=float)
+    given = given if dimension == 2 else given / np.linalg.norm(given)
+    return draws.tilted(np.tile(given, (len(swarm), 1)), table.tilt), False
+
+
+def _listed(rows: Sequence[Row], names: Sequence[Sequence[str]], orientation: FloatArray) -> list[FloatArray]:
+    """Positions and orientations of the ``rows`` of a file; the given ``orientation`` (n, q) without columns of it."""
+    places, turns = names
+    position = np.array([[row[name] for name in places] for row in rows], dtype=float)
+    if turns[0] in rows[0]:
+        orientation = np.array([[row[name] for name in turns] for row in rows], dtype=float)
+    return [position, orientation]
+
+
+def _tables(swarm: Swarm, pose: Pose, rows: Sequence[Row], draws: Draws) -> Iterator[dict[str, Any]]:
+    table, (_, turns, velocities, spins) = swarm.table, columns(swarm.dimension)
+    velocity = _rates(table.velocity, table.velocity_deviation, len(swarm), len(velocities), draws)
+    spin = _rates(table.angular_velocity, table.angular_velocity_deviation, len(swarm), len(spins), draws)
+    for body in range(len(swarm)):
+        row: Row = rows[body] if rows else {}
+        yield {
+            "name": row.get("name") or f"{table.name}{body}",
+            "density": row.get("density", table.density),
+            **swarm.options(body),
+            "position": pose.position[body].tolist(),
+            **_orientation(swarm, pose, body, turns[0] in row),
+            **_rate("velocity", velocity, body, velocities, row),
+            **_rate("angular_velocity", spin, body, spins, row),
+        }
+
+
+def _orientation(swarm: Swarm, pose: Pose, body: int, listed: bool) -> dict[str, Any]:
+    """Key of an orientation, without one of balls for which none is given."""
+    given = listed or swarm.table.angle is not None or swarm.table.orientation is not None
+    if swarm.bodies[body].radius is not None and not given:
+        return {}
+    turned = pose.orientation[body].tolist()
+    return {"angle": turned[0]} if swarm.dimension == 2 else {"orientation": turned}
+
+
+def _rates(
+    mean: Sequence[float] | None, deviation: float, count: int, components: int, draws: Draws
+) -> FloatArray | None:
+    """Velocities (n, d), or angular ones (n, k), None where all are zero."""
+    random = deviation * draws.normal(count, components)
+    if mean is None and deviation == 0.0:
+        return None
+    return random if mean is None else random + mean
+
+
+def _rate(key: str, drawn: FloatArray | None, body: int, names: Sequence[str], row: Row) -> dict[str, Any]:
+    if names[0] in row:
+        return {key: [row[name] for name in names]}
+    return {} if drawn is None else {key: drawn[body].tolist()}
