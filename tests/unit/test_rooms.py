@@ -25,7 +25,8 @@ BELOW = {
     "contact": "mechanics model geometry",
     "coupling": "contact mechanics model geometry",
     "setup": "contact mesh joints mechanics nested scene model fluid geometry",
-    "case": "setup contact mesh joints mechanics nested scene model fluid geometry",
+    "seeding": "contact mechanics nested scene model geometry",
+    "case": "setup seeding contact mesh joints mechanics nested scene model fluid geometry",
     "run": "case setup mesh coupling contact output mechanics nested scene model fluid geometry",
 }
 

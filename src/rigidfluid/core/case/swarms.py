@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from itertools import islice
 from typing import Any
 
 from rigidfluid.core.case.mechanisms import placed_mechanisms
@@ -26,7 +27,7 @@ def has_seeds(data: Mapping[str, Any]) -> bool:
 
 
 def with_seeded_bodies(data: Mapping[str, Any], scene: Scene, registry: Registry) -> dict[str, Any]:
-    """Tables of a ``scene`` with the bodies of its swarms after its own, swarm by swarm; each swarm avoids those before.
+    """Tables of a ``scene`` with the bodies of its swarms after its own; each swarm avoids those before it.
 
     Raises SceneError or PluginError for swarms that are wrong or find no room, and for a domain and bodies of which
     nothing can be made.
@@ -67,10 +68,11 @@ def _owners(before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[str
     """Place of each body that messages name: of a seeded one its swarm and name."""
     own = len(before.get("body", ()))
     yield from (f"body.{number}" for number in range(own))
-    swarms = after.get("swarm", ())
-    new = [n for n, one in enumerate(swarms) if "seeded" not in before["swarm"][n] for _ in range(one["seeded"]["number"])]
-    for number, body in zip(new, after["body"][own:], strict=True):
-        yield f"swarm.{number}, body {body['name']!r}"
+    bodies = iter(after["body"][own:])
+    for number, (old, new) in enumerate(zip(before["swarm"], after["swarm"], strict=True)):
+        if "seeded" not in old:
+            names = [body["name"] for body in islice(bodies, new["seeded"]["number"])]
+            yield from (f"swarm.{number}, body {name!r}" for name in names)
 
 
 def _renamed(subject: str, owners: Sequence[str]) -> str:

@@ -14,12 +14,8 @@ from rigidfluid.errors import SceneError
 _UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 
 
-class Placement(Protocol):
-    """Position and orientation keys of a table: an angle in 2D, a quaternion in 3D, or neither."""
-
-    @property
-    def position(self) -> Sequence[float] | FloatArray:
-        """Position of the centre of mass [length]."""
+class Turned(Protocol):
+    """Orientation keys of a table: an angle in 2D, a quaternion in 3D, or neither."""
 
     @property
     def angle(self) -> float | None:
@@ -28,6 +24,14 @@ class Placement(Protocol):
     @property
     def orientation(self) -> Sequence[float] | FloatArray | None:
         """Quaternion, scalar first [1]."""
+
+
+class Placement(Turned, Protocol):
+    """Position and orientation keys of a table."""
+
+    @property
+    def position(self) -> Sequence[float] | FloatArray:
+        """Position of the centre of mass [length]."""
 
 
 class Moving(Protocol):
@@ -42,7 +46,7 @@ class Moving(Protocol):
         """Angular velocity (k,), in 2D a number too, None at rest [rad/time]."""
 
 
-def check_orientation(table: Placement, dimension: int, at: str) -> None:
+def check_orientation(table: Turned, dimension: int, at: str) -> None:
     """Raise SceneError for an orientation that the ``dimension`` does not have; ``at`` is the table's place."""
     if dimension == 3 and table.angle is not None:
         raise SceneError(f"{at}.angle", table.angle, "no angle in 3D", "Give `orientation`, a quaternion.")

@@ -69,9 +69,7 @@ class TableSizes(Table):
     )
 
 
-SizeTable = Annotated[
-    UniformSizes | NormalSizes | LogNormalSizes | TableSizes, Field(discriminator="distribution")
-]
+SizeTable = Annotated[UniformSizes | NormalSizes | LogNormalSizes | TableSizes, Field(discriminator="distribution")]
 
 
 class BoxRegion(Table):

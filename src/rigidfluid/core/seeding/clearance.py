@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from rigidfluid.core.contact.path.detector_choice import exact_detector
-from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.geometry.surface import Surface
 from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.types import Pose
 from rigidfluid.registry import Registry
@@ -77,24 +78,21 @@ class Clearance:
     def within(self, pose: Pose, reach: float) -> Gaps:
         """All gaps up to ``reach`` [length] at a ``pose`` of all bodies."""
         found = self._detector.detect(pose, None, reach)
-        wall = found.body_b >= self._count
-        told = Gaps(
-            found.body_a, np.where(wall, -1, found.body_b), found.point_a, found.point_b, found.normal, found.gap
-        )
-        parts = [_rows(told, found.body_a < self._moving), *self._at_curved(pose.position[: self._moving], reach)]
-        return Gaps(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+        found = select(found, found.body_a < self._moving)
+        other = np.where(found.body_b < self._count, found.body_b, -1)
+        told = Gaps(found.body_a, other, found.point_a, found.point_b, found.normal, found.gap)
+        at_curved = [self._at_curved(surface, pose.position[: self._moving], reach) for surface in self._curved]
+        return _joined([told, *at_curved])
 
-    def _at_curved(self, position: FloatArray, reach: float) -> list[Gaps]:
-        parts = []
-        for surface in self._curved:
-            gap = surface.signed_distance(position) - self._bounds
-            near = np.flatnonzero(gap <= reach)
-            normal = surface.normal(position[near])
-            point_a = position[near] - self._bounds[near, None] * normal
-            no_body = np.full(len(near), -1)
-            parts.append(Gaps(near, no_body, point_a, point_a - gap[near, None] * normal, normal, gap[near]))
-        return parts
+    def _at_curved(self, surface: Surface, position: FloatArray, reach: float) -> Gaps:
+        """Gaps of bounding balls to one surface."""
+        gap = surface.signed_distance(position) - self._bounds
+        near = np.flatnonzero(gap <= reach)
+        normal = surface.normal(position[near])
+        point_a = position[near] - self._bounds[near, None] * normal
+        return Gaps(near, np.full(len(near), -1), point_a, point_a - gap[near, None] * normal, normal, gap[near])
 
 
-def _rows(gaps: Gaps, chosen: BoolArray) -> Gaps:
-    return Gaps(*(column[chosen] for column in gaps))
+def _joined(parts: Sequence[Gaps]) -> Gaps:
+    columns: list[Any] = [np.concatenate(column) for column in zip(*parts, strict=True)]
+    return Gaps(*columns)

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import numpy as np
+import scipy
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.seeding.clearance import Surroundings
 from rigidfluid.core.seeding.draws import Draws
 from rigidfluid.core.seeding.regions import Region
 
-_TRIES, _ROUNDS = 128, 40
+_TRIES, _ROUNDS = 32, 160
 """Places that are drawn at once, and how often, before a body finds none."""
+
+_RECENT = 64
+"""Number of balls that are searched one by one before they are put into a tree."""
 
 
 class Insertion:
@@ -30,26 +34,24 @@ class Insertion:
 
         The largest ball comes first.
         """
-        count = len(radii)
-        centres = np.concatenate([others, np.zeros((count, others.shape[1]))])
-        sizes = np.concatenate([bounds, np.zeros(count)])
-        found = np.zeros((count, others.shape[1]))
-        for placed, body in enumerate(np.argsort(-radii, kind="stable").tolist(), start=len(others)):
-            place = self._place(radii[body], gap, centres[:placed], sizes[:placed])
+        placed, found = _Balls(others, bounds), np.zeros((len(radii), others.shape[1]))
+        for body in np.argsort(-radii, kind="stable").tolist():
+            place = self._place(float(radii[body]) + gap, placed)
             if place is None:
                 return None
-            centres[placed], sizes[placed], found[body] = place, radii[body], place
+            placed.add(place, float(radii[body]))
+            found[body] = place
         return found
 
-    def _place(self, radius: float, gap: float, centres: FloatArray, sizes: FloatArray) -> FloatArray | None:
+    def _place(self, room: float, placed: _Balls) -> FloatArray | None:
+        """A place (d,) with so much ``room`` around it, if one is found [length]."""
         lower, upper = self._region.extent
         for _ in range(_ROUNDS):
             tried = lower + (upper - lower) * self._draws.uniform(_TRIES, len(lower))
-            tried = tried[self._is_clear(tried, radius + gap)]
-            distance = np.sqrt(np.sum((tried[:, None] - centres) ** 2, axis=2))
-            free = np.flatnonzero(np.all(distance >= sizes + radius + gap, axis=1))
-            if len(free):
-                return np.asarray(tried[free[0]])
+            tried = tried[self._is_clear(tried, room)]
+            free = placed.first_clear(tried, room)
+            if free is not None:
+                return free
         return None
 
     def _is_clear(self, points: FloatArray, room: float) -> BoolArray:
@@ -58,3 +60,36 @@ class Insertion:
         for surface in self._surfaces:
             clear[clear] = surface.signed_distance(points[clear]) >= room
         return clear
+
+
+class _Balls:
+    """Balls around ``centres`` (m, d) with ``radii`` (m,) [length], to which others are added."""
+
+    def __init__(self, centres: FloatArray, radii: FloatArray) -> None:
+        self._centres, self._radii = list(centres), radii.tolist()
+        self._plant()
+
+    def add(self, centre: FloatArray, radius: float) -> None:
+        """A further ball."""
+        self._centres.append(centre)
+        self._radii.append(radius)
+        if len(self._centres) - self._planted >= _RECENT:
+            self._plant()
+
+    def first_clear(self, points: FloatArray, room: float) -> FloatArray | None:
+        """The first of ``points`` (N, d) that is so far from all balls, if any."""
+        if self._planted and len(points):
+            nearest = np.asarray(self._tree.query(points)[0])
+            points = points[nearest >= self._least + room]  # of balls of one size there are no others
+        centres, radii = np.reshape(self._centres, (-1, points.shape[1])), np.array(self._radii)
+        for point in points:
+            if np.all(np.linalg.norm(centres - point, axis=1) >= radii + room):
+                return np.asarray(point)
+        return None
+
+    def _plant(self) -> None:
+        """Put all balls into the tree."""
+        self._planted = len(self._centres)
+        if self._planted:
+            self._tree = scipy.spatial.cKDTree(np.array(self._centres))
+            self._least = min(self._radii)

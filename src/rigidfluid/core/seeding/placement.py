@@ -43,7 +43,9 @@ class Others:
     def joined(self, bodies: tuple[Body, ...], pose: Pose) -> Others:
         """These and further bodies."""
         position = np.concatenate([self.pose.position, pose.position])
-        return Others((*self.bodies, *bodies), Pose(position, np.concatenate([self.pose.orientation, pose.orientation])))
+        return Others(
+            (*self.bodies, *bodies), Pose(position, np.concatenate([self.pose.orientation, pose.orientation]))
+        )
 
 
 @dataclass(frozen=True)
@@ -84,7 +86,7 @@ class Placement:
 
     def _grown(self, start: Pose, scale: float, turning: bool) -> Pose:
         swarm, count = self.swarm, len(self.swarm)
-        growth = Growth(swarm.bodies, self.others.bodies, self.surroundings, swarm.gap, turning)
+        growth = Growth(swarm.bodies, self.others.bodies, self.surroundings, swarm.gap, turning, self.draws)
         whole = Others((), start).joined((), self.others.pose).pose
         pose, reached = growth.grown(whole, scale)
         if reached < 1.0:

@@ -11,9 +11,6 @@ from rigidfluid.core.mechanics.rigid import moment, rotate
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.seeding.clearance import Clearance, Gaps
 
-_STEPS = 2000
-"""Steps after which gaps that are still too narrow count as stuck."""
-
 _STEP, _LONGEST = 0.1, 0.5
 """First and longest step, over the time √(m/k) of a body on the spring of one gap [1]."""
 
@@ -30,7 +27,7 @@ class Relaxation:
     """Descent of the energy Σ ½ (gap wanted - gap)² over all gaps that are too narrow, by FIRE.
 
     ``wanted`` is aimed at, and ``least`` is enough [length]. Bodies have mass 1 and inertia R², ``radii`` R (n,)
-    [length]; ``turning`` tells whether they rotate.
+    [length]; ``turning`` tells whether they rotate. They count as stuck after a number of ``steps``.
 
     Notes
     -----
@@ -43,6 +40,7 @@ class Relaxation:
     wanted: float
     least: float
     turning: bool
+    steps: int
 
     def __call__(self, start: Pose) -> Pose | None:
         """The pose at which no gap is below ``least``, those of bodies beyond n unchanged; None where it is stuck."""
@@ -51,7 +49,7 @@ class Relaxation:
         spins = 1 if start.orientation.shape[1] == 1 else 3
         velocity = np.zeros((count, start.position.shape[1] + spins))
         step, mixing, good = _STEP, _MIXING, 0
-        for _ in range(_STEPS):
+        for _ in range(self.steps):
             if np.all(gaps.gap >= self.least):
                 return pose
             force = self._force(gaps, pose)

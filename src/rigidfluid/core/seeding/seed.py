@@ -23,8 +23,6 @@ from rigidfluid.errors import SceneError
 from rigidfluid.registry import Registry
 
 
-
-
 @dataclass(frozen=True)
 class Seeded:
     """Seeded bodies: their ``tables`` as of the scene's bodies, the ``record`` of the swarm, and all ``bodies`` that are
