@@ -24,8 +24,8 @@ _DEAR = 1e4
 
 
 class Gaps(NamedTuple):
-    """Gaps (m,) of bodies ``a`` (m,) to others ``b``, -1 of walls: where they are nearest on a and on b, ``point_a`` and
-    ``point_b`` (m, d), and the ``normal`` (m, d) from b to a [length]."""
+    """Gaps (m,) of bodies ``a`` (m,) to others ``b`` (m,), -1 of walls; nearest points ``point_a`` of a and ``point_b``
+    of b (m, d) [length], and unit ``normal`` from b to a (m, d)."""
 
     a: IntArray
     b: IntArray

@@ -40,7 +40,7 @@ class Cylinder:
 
     def contains(self, points: FloatArray) -> BoolArray:
         """Which of ``points`` (N, d) are inside, (N,)."""
-        return np.all([surface.signed_distance(points) >= 0.0 for surface in self.surfaces], axis=0)
+        return np.asarray(np.all([surface.signed_distance(points) >= 0.0 for surface in self.surfaces], axis=0))
 
     def _ends(self) -> Iterator[Surface]:
         if self._length:

@@ -73,10 +73,10 @@ def _cut_normal(part: FloatArray, mean: float, deviation: float, ends: FloatArra
     from scipy.special import ndtr, ndtri
 
     low, high = ndtr((ends - mean) / deviation)
-    return np.clip(mean + deviation * ndtri(low + part * (high - low)), *ends)
+    return np.asarray(np.clip(mean + deviation * ndtri(low + part * (high - low)), *ends))
 
 
 def _chosen(part: FloatArray, weights: Sequence[float]) -> IntArray:
     ends = np.cumsum(weights)
     found = np.searchsorted(ends, part * ends[-1], side="right")
-    return np.minimum(found, np.flatnonzero(weights)[-1]).astype(np.int64)
+    return np.asarray(np.minimum(found, np.flatnonzero(weights)[-1]), dtype=np.int64)

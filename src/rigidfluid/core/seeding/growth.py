@@ -29,8 +29,8 @@ _NEAR, _CYCLES, _SHAKES = 0.95, 8, 20
 shakes in between."""
 
 _SHRUNK, _SHAKE = 0.03, 0.2
-"""Relative loss of size before they are shaken, and standard deviation of their displacement over the bounding radius in
-each direction [1]."""
+"""Relative loss of size before they are shaken, and standard deviation of each component of their displacement over the
+bounding radius [1]."""
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from rigidfluid.core.seeding.swarm import Swarm
 from rigidfluid.errors import SceneError
 
 _THIN = {2: 0.45, 3: 0.3}
-"""Fraction of the region that bounding balls fill, by dimension, up to which bodies are inserted in their full size [1].
+"""Fraction of the region that bounding balls fill, by dimension, up to which bodies are inserted in full size [1].
 Insertion ends at .547 in 2D and .38 in 3D (J. Feder 1980)."""
 
 _START = {2: 0.25, 3: 0.15}

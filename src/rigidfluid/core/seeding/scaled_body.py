@@ -20,8 +20,7 @@ class _ScaledOptions(PartOptions):
 
 
 class ScaledBody(Body):
-    """A ``shape`` with its lengths multiplied by a ``factor``, as bodies are while they grow: x is inside if x/factor is
-    inside the shape."""
+    """A ``shape`` with its lengths multiplied by a ``factor``: x is inside if x/factor is inside the shape."""
 
     def __init__(self, shape: Body, factor: float) -> None:
         self.name = shape.name  # type: ignore[misc]

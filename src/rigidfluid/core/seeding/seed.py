@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -25,8 +25,8 @@ from rigidfluid.registry import Registry
 
 @dataclass(frozen=True)
 class Seeded:
-    """Seeded bodies: their ``tables`` as of the scene's bodies, the ``record`` of the swarm, and all ``bodies`` that are
-    there now."""
+    """Seeded bodies: their ``tables`` as of the scene's bodies, the ``record`` of the swarm, and all ``bodies`` that
+    are there now."""
 
     tables: tuple[dict[str, Any], ...]
     record: SeededTable
@@ -51,9 +51,9 @@ def seed(table: SwarmTable, at: str, draws: Draws, domain: Domain, others: Other
         assert table.number is not None
         swarm = swarm.first(table.number)
     orientation, turning = _orientations(swarm, draws)
+    way: Literal["insertion", "growth", "file"] = "file"
     if rows:
-        position, orientation = _listed(rows, columns(swarm.dimension)[:2], orientation)
-        pose, way = Pose(position, orientation), "file"
+        pose = _listed(rows, columns(swarm.dimension)[:2], orientation)
     else:
         pose, way = Placement(swarm, region, surroundings, others, draws).placed(orientation, turning)
     gap = smallest_gap(swarm.bodies, pose, others, surroundings, 2.0 * swarm.gap)
@@ -94,13 +94,13 @@ def _orientations(swarm: Swarm, draws: Draws) -> tuple[FloatArray, bool]:
     return draws.tilted(np.tile(given, (len(swarm), 1)), table.tilt), False
 
 
-def _listed(rows: Sequence[Row], names: Sequence[Sequence[str]], orientation: FloatArray) -> list[FloatArray]:
-    """Positions and orientations of the ``rows`` of a file; the given ``orientation`` (n, q) without columns of it."""
+def _listed(rows: Sequence[Row], names: Sequence[Sequence[str]], orientation: FloatArray) -> Pose:
+    """Pose of the ``rows`` of a file; the given ``orientation`` (n, q) without columns of it."""
     places, turns = names
     position = np.array([[row[name] for name in places] for row in rows], dtype=float)
     if turns[0] in rows[0]:
         orientation = np.array([[row[name] for name in turns] for row in rows], dtype=float)
-    return [position, orientation]
+    return Pose(position, orientation)
 
 
 def _tables(swarm: Swarm, pose: Pose, rows: Sequence[Row], draws: Draws) -> Iterator[dict[str, Any]]:

@@ -57,12 +57,12 @@ class Swarm:
     @property
     def volumes(self) -> FloatArray:
         """Volume of each body, (n,) [length^d]."""
-        return self.factor**self.dimension * np.array([shape.volume for shape in self.shapes])[self.shape]
+        return np.asarray(self.factor**self.dimension * np.array([shape.volume for shape in self.shapes])[self.shape])
 
     @property
     def bounding_radii(self) -> FloatArray:
         """Bounding radius of each body, (n,) [length]."""
-        return self.factor * np.array([shape.bounding_radius for shape in self.shapes])[self.shape]
+        return np.asarray(self.factor * np.array([shape.bounding_radius for shape in self.shapes])[self.shape])
 
     @property
     def gap(self) -> float:
