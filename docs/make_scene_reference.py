@@ -37,19 +37,21 @@ def _sections() -> Iterator[str]:
     for key, place in schema["properties"].items():
         listed = place.get("type") == "array"
         title = f"[[{key}]]" if listed else f"[{key}]"
-        if "oneOf" in place.get("items", {}):
+        if _union(place):
             yield from _sections_by_type(title, key, place, schema["$defs"])
         else:
             yield from _section(title, key, _target(place), schema["$defs"])
 
 
 def _sections_by_type(title: str, path: str, place: Schema, definitions: dict[str, Schema]) -> Iterator[str]:
-    """A list of tables whose keys depend on their type."""
+    """Tables whose keys depend on their type."""
     yield f"## `{title}`\n\n{place['description']}.\n"
-    for one in place["items"]["oneOf"]:
+    union = _union(place)
+    key = union["discriminator"]["propertyName"]
+    for one in union["oneOf"]:
         name = _target(one)
-        kind = _type(definitions[name]["properties"]["type"]).partition(",")[0].strip("`")
-        yield from _section(f"{title} type = {kind}", path, name, definitions)
+        kind = _type(definitions[name]["properties"][key]).partition(",")[0].strip("`")
+        yield from _section(f"{title} {key} = {kind}", path, name, definitions)
 
 
 def _section(title: str, path: str, name: str, definitions: dict[str, Schema]) -> Iterator[str]:
@@ -61,8 +63,10 @@ def _section(title: str, path: str, name: str, definitions: dict[str, Schema]) -
 def _within(path: str, schema: Schema, definitions: dict[str, Schema]) -> Iterator[str]:
     """The tables in a table."""
     for key, place in schema["properties"].items():
-        if target := _target(place):
-            title = f"[[{path}.{key}]]" if place.get("type") == "array" else f"[{path}.{key}]"
+        title = f"[[{path}.{key}]]" if place.get("type") == "array" else f"[{path}.{key}]"
+        if _union(place):
+            yield from _sections_by_type(title, f"{path}.{key}", place, definitions)
+        elif target := _target(place):
             yield from _section(title, f"{path}.{key}", target, definitions)
 
 
@@ -102,12 +106,19 @@ def _type(field: Schema) -> str:
         return f"`{json.dumps(field['const'])}`"
     if "enum" in field:
         return ", ".join(f"`{json.dumps(value)}`" for value in field["enum"])
+    if _union(field):
+        return "table"
     if "anyOf" in field:
         return " or ".join(_type(one) for one in field["anyOf"] if one.get("type") != "null")
     if field.get("type") == "array":
         entry = _type(field.get("items") or field["prefixItems"][0])
         return f"list of {entry.replace('list', 'lists')}" + ("" if entry.endswith("s") else "s")
     return "table" if "$ref" in field or field["type"] == "object" else str(field["type"])
+
+
+def _union(field: Schema) -> Schema:
+    """The tables, told apart by a key, of a field or a list's entry; empty for any other."""
+    return next((one for one in (field, field.get("items", {}), *field.get("anyOf", ())) if "oneOf" in one), {})
 
 
 def _target(field: Schema) -> str:

@@ -30,6 +30,7 @@ from rigidfluid.checks.separation import law_findings, open_face_findings, stren
 from rigidfluid.checks.shapes import facet_findings
 from rigidfluid.checks.static_load import rest_findings, stack_findings
 from rigidfluid.checks.stepping import step_findings
+from rigidfluid.checks.swarms import swarm_findings
 from rigidfluid.checks.tolerance import tolerance_findings
 from rigidfluid.checks.units import unit_findings
 from rigidfluid.core.case.scene_model import Case, model_of
@@ -109,7 +110,7 @@ def findings(model: Model, system: System, start: Contacts) -> Iterator[Finding]
     """The answers to all questions, in the order in which they are asked."""
     mesh, time = model.fluid.mesh, model.time
     yield from chain(law_findings(system), open_face_findings(system), strength_findings(system))
-    yield from overridden_findings(model.boundary_tables, model.domain)
+    yield from chain(overridden_findings(model.boundary_tables, model.domain), swarm_findings(model.swarm_tables))
     yield from chain(unit_findings(model, system), tolerance_findings(time), facet_findings(system))
     yield from chain(joint_findings(model, system), mechanism_findings(model, system))
     if system.fluid is None:

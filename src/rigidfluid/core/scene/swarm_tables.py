@@ -90,13 +90,10 @@ class CylinderRegion(Table):
 
 
 class FileRegion(Table):
-    """The inside of a closed surface from a file."""
+    """The inside of a closed surface of triangles from an STL file; only in 3D."""
 
     type: Literal["file"] = Field(description="Form of the region")
-    file: str = Field(
-        description="A file that a domain of type `cad` or `mesh` can read, such as .step or .stl, searched for in the "
-        "scene's folder"
-    )
+    file: str = Field(description="STL file, text or binary, searched for in the scene's folder")
     scale: Positive = Field(default=1.0, description="Factor by which lengths in the file are multiplied [1]")
 
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -15,11 +14,9 @@ from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.nested.part_options import own_options, told_at
 from rigidfluid.core.scene.swarm_tables import BoxRegion, CylinderRegion, FileRegion, RegionTable
 from rigidfluid.core.seeding.cylinder import Cylinder
+from rigidfluid.core.seeding.inside import Inside
 from rigidfluid.errors import SceneError
-from rigidfluid.registry import DOMAIN, Registry
-
-_CAD = (".step", ".stp", ".brep", ".iges", ".igs")
-"""Ends of names of files that a domain of type `cad` reads; one of type `mesh` reads all others."""
+from rigidfluid.registry import BODY, DOMAIN, Registry
 
 
 class Region(Protocol):
@@ -73,18 +70,15 @@ def region_of(table: RegionTable | None, domain: Domain, at: str, registry: Regi
         return DomainRegion(domain)
     dimension = domain.dimension
     if isinstance(table, BoxRegion):
-        return _of_type("box", {"lower": table.lower, "upper": table.upper}, dimension, at, registry)
+        box, corners = registry.get(DOMAIN, "box", at), {"lower": table.lower, "upper": table.upper}
+        with told_at(at):
+            return DomainRegion(box(own_options(box, corners, "domain"), dimension))
     if isinstance(table, CylinderRegion):
         return _cylinder(table, dimension, at)
     assert isinstance(table, FileRegion)
-    kind = "cad" if Path(table.file).suffix.lower() in _CAD else "mesh"
-    return _of_type(kind, {"file": table.file, "scale": table.scale}, dimension, at, registry)
-
-
-def _of_type(name: str, options: Mapping[str, Any], dimension: int, at: str, registry: Registry) -> Region:
-    part = registry.get(DOMAIN, name, at)
+    surface, keys = registry.get(BODY, "stl", at), {"file": table.file, "scale": table.scale}
     with told_at(at):
-        return DomainRegion(part(own_options(part, options, "domain"), dimension))
+        return Inside(surface(own_options(surface, keys, "body"), dimension))
 
 
 def _cylinder(table: CylinderRegion, dimension: int, at: str) -> Cylinder:

@@ -23,6 +23,7 @@ from rigidfluid.core.scene.boundary_tables import BoundaryTable
 from rigidfluid.core.scene.domain_table import WindowTable
 from rigidfluid.core.scene.run_tables import OutputTable, TimeTable
 from rigidfluid.core.scene.scene import Scene, UnitsTable
+from rigidfluid.core.scene.swarm_tables import SwarmTable
 from rigidfluid.core.setup.checked import AnyRow, NotNegative, Vector, checked
 from rigidfluid.core.setup.contact_laws import ContactLaw, told_apart
 from rigidfluid.core.setup.description import describe
@@ -167,6 +168,11 @@ class Model(Arrangement, Described):
     def boundary_tables(self) -> tuple[BoundaryTable, ...]:
         """Tables of conditions in the scene that it was made of."""
         return () if self._scene is None else self._scene.boundary
+
+    @property
+    def swarm_tables(self) -> tuple[SwarmTable, ...]:
+        """Tables of swarms in the scene that it was made of."""
+        return () if self._scene is None else self._scene.swarm
 
     @property
     def wet(self) -> bool:
