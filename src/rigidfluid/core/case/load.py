@@ -17,6 +17,7 @@ from rigidfluid.core.case.swarms import has_seeds, told_by_swarms, with_seeded_b
 from rigidfluid.core.case.time_factor import read_time_tables
 from rigidfluid.core.geometry.value_types import describe
 from rigidfluid.core.model.memory import told_memory
+from rigidfluid.core.nested.placing import initial_pose
 from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.earlier import tables_now
 from rigidfluid.core.scene.mesh_tables import AUTO
@@ -25,7 +26,10 @@ from rigidfluid.core.scene.places import told_in_file
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.scene.toml_file import read_toml
 from rigidfluid.core.scene.validation import read_table
+from rigidfluid.core.seeding.placement import Others
+from rigidfluid.core.seeding.seed import Occupied
 from rigidfluid.core.setup.made_bodies import check_made_bodies, told_by_numbers
+from rigidfluid.core.setup.placed_bodies import PlacedBodies
 from rigidfluid.errors import ArgumentError
 from rigidfluid.registry import FLUID_BACKEND, Registry, missing_packages
 from rigidfluid.regular_file import path_of
@@ -68,9 +72,21 @@ def scene_of_results(data: Mapping[str, Any]) -> Scene:
     if not has_seeds(data):
         return _sized(data)
     tables = tables_now(data)
-    seeded = with_seeded_bodies(tables, _tables(_with_any_size(tables)), Registry.load())
+    scene = _tables(_with_any_size(tables))
+    seeded = with_seeded_bodies(tables, scene.swarm, scene.scene.seed, _occupied(scene, Registry.load()))
     with told_by_swarms(tables, seeded):
         return _sized(seeded)
+
+
+def _occupied(scene: Scene, registry: Registry) -> Occupied:
+    """The domain of a scene with the bodies that are there before all swarms; raises SceneError or PluginError."""
+    with all_told() as ask:
+        domain = ask(scene_domain, scene.domain, registry, scene.dimension)
+        mechanisms = ask(placed_mechanisms, scene.mechanism, registry, scene.dimension)
+        bodies = [ask(scene_body, table, f"body.{n}", registry, scene.dimension) for n, table in enumerate(scene.body)]
+    placed = PlacedBodies(domain, tuple(bodies), mechanisms, registry).all_bodies
+    shapes = tuple(body.shape for body in placed)
+    return Occupied(domain, Others(shapes, initial_pose(placed, scene.dimension)), registry)
 
 
 def _sized(data: Mapping[str, Any]) -> Scene:

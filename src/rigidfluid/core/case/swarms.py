@@ -4,20 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from itertools import islice
 from typing import Any
 
-from rigidfluid.core.case.mechanisms import placed_mechanisms
-from rigidfluid.core.case.scene_model import scene_body, scene_domain
-from rigidfluid.core.nested.placing import initial_pose
-from rigidfluid.core.scene.all_errors import all_told
-from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.scene.swarm_tables import SwarmTable
 from rigidfluid.core.seeding.draws import Draws
-from rigidfluid.core.seeding.placement import Others
-from rigidfluid.core.seeding.seed import seed
-from rigidfluid.core.setup.placed_bodies import PlacedBodies
+from rigidfluid.core.seeding.seed import Occupied, seed
 from rigidfluid.errors import PluginError, SceneError
-from rigidfluid.registry import Registry
 
 
 def has_seeds(data: Mapping[str, Any]) -> bool:
@@ -26,32 +20,22 @@ def has_seeds(data: Mapping[str, Any]) -> bool:
     return isinstance(swarms, list) and any(isinstance(one, Mapping) and "seeded" not in one for one in swarms)
 
 
-def with_seeded_bodies(data: Mapping[str, Any], scene: Scene, registry: Registry) -> dict[str, Any]:
-    """Tables of a ``scene`` with the bodies of its swarms after its own; each swarm avoids those before it.
+def with_seeded_bodies(
+    data: Mapping[str, Any], swarms: Sequence[SwarmTable], seed_of_all: int, occupied: Occupied
+) -> dict[str, Any]:
+    """Tables of a scene with the bodies of its ``swarms`` after its own; each swarm avoids those before it.
 
-    Raises SceneError or PluginError for swarms that are wrong or find no room, and for a domain and bodies of which
-    nothing can be made.
+    Raises SceneError or PluginError for swarms that are wrong or find no room.
     """
-    others, domain = _start(scene, registry)
-    bodies, swarms = list(data.get("body", [])), []
-    for number, table in enumerate(scene.swarm):
+    bodies, tables = list(data.get("body", [])), []
+    for number, table in enumerate(swarms):
         record = table.seeded
         if record is None:
-            found = seed(table, f"swarm.{number}", Draws(scene.scene.seed, number), domain, others, registry)
+            found = seed(table, f"swarm.{number}", Draws(seed_of_all, number), occupied)
             bodies += found.tables
-            record, others = found.record, found.bodies
-        swarms.append({**data["swarm"][number], "seeded": record.model_dump()})
-    return {**data, "body": bodies, "swarm": swarms}
-
-
-def _start(scene: Scene, registry: Registry) -> tuple[Others, Any]:
-    """Bodies that are there before all swarms, and the domain."""
-    with all_told() as ask:
-        domain = ask(scene_domain, scene.domain, registry, scene.dimension)
-        mechanisms = ask(placed_mechanisms, scene.mechanism, registry, scene.dimension)
-        bodies = [ask(scene_body, table, f"body.{n}", registry, scene.dimension) for n, table in enumerate(scene.body)]
-    placed = PlacedBodies(domain, tuple(bodies), mechanisms, registry).all_bodies
-    return Others(tuple(body.shape for body in placed), initial_pose(placed, scene.dimension)), domain
+            record, occupied = found.record, replace(occupied, others=found.bodies)
+        tables.append({**data["swarm"][number], "seeded": record.model_dump()})
+    return {**data, "body": bodies, "swarm": tables}
 
 
 @contextmanager

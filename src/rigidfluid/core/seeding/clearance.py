@@ -81,11 +81,11 @@ class Clearance:
         found = select(found, found.body_a < self._moving)
         other = np.where(found.body_b < self._count, found.body_b, -1)
         told = Gaps(found.body_a, other, found.point_a, found.point_b, found.normal, found.gap)
-        at_curved = [self._at_curved(surface, pose.position[: self._moving], reach) for surface in self._curved]
-        return _joined([told, *at_curved])
+        of_balls = [self._ball_gaps(surface, pose.position[: self._moving], reach) for surface in self._curved]
+        return _joined([told, *of_balls])
 
-    def _at_curved(self, surface: Surface, position: FloatArray, reach: float) -> Gaps:
-        """Gaps of bounding balls to one surface."""
+    def _ball_gaps(self, surface: Surface, position: FloatArray, reach: float) -> Gaps:
+        """Gaps of bounding balls to one surface, up to ``reach`` [length]."""
         gap = surface.signed_distance(position) - self._bounds
         near = np.flatnonzero(gap <= reach)
         normal = surface.normal(position[near])

@@ -28,8 +28,8 @@ def columns(dimension: int) -> tuple[tuple[str, ...], ...]:
 
 
 def listed_bodies(file: str, at: str, dimension: int) -> list[Row]:
-    """Rows of a CSV file by its columns; lines that are empty or start with # are skipped. Raises SceneError, which
-    names the line, for a file or a row that cannot be read."""
+    """Rows of a CSV file by its columns, each with the number of its ``line``; lines that are empty or start with # are
+    skipped. Raises SceneError, which names the line, for a file or a row that cannot be read."""
     require_regular(Path(file), at, MOST_TEXT)
     try:
         with Path(file).open(encoding="utf-8-sig", newline="") as lines:
@@ -42,7 +42,7 @@ def listed_bodies(file: str, at: str, dimension: int) -> list[Row]:
     if len(rows) > MOST_BODIES + 1:
         raise SceneError(at, f"{file!r} with {len(rows) - 1} bodies", f"at most {MOST_BODIES}", "Use several swarms.")
     _check_header(rows[0][1], f"{at}, line {rows[0][0]}", dimension)
-    return [_row(rows[0][1], cells, f"{at}, line {line}") for line, cells in rows[1:]]
+    return [{"line": line, **_row(rows[0][1], cells, f"{at}, line {line}")} for line, cells in rows[1:]]
 
 
 def _cells(reader: Iterator[list[str]]) -> Iterator[tuple[int, list[str]]]:

@@ -24,7 +24,7 @@ _THIN = {2: 0.45, 3: 0.3}
 Insertion ends at .547 in 2D and .38 in 3D (J. Feder 1980)."""
 
 _START = {2: 0.25, 3: 0.15}
-"""That which small bodies fill from which growth starts [1]."""
+"""Fraction that small bodies fill when growth starts [1]."""
 
 _SMALLER, _SMALLEST = 0.8, 0.05
 """Factor of the size where small bodies do not find places either, and the least size [1]."""
@@ -131,11 +131,14 @@ def refuse_outside(region: Region, around: Region, at: str, draws: Draws) -> Non
         raise SceneError(at, found, f"a region inside the domain from {low} to {high}", "Move it.")
 
 
-def smallest_gap(bodies: tuple[Body, ...], pose: Pose, others: Others, around: Surroundings, start: float) -> float:
+def nearest(
+    bodies: tuple[Body, ...], pose: Pose, others: Others, around: Surroundings, start: float
+) -> tuple[float, int]:
     """Smallest gap of bodies to each other, to others and to the surfaces around, looked for from ``start`` on
-    [length]."""
+    [length]; and the number of the body that has it."""
     whole = Others(bodies, pose).joined(others.bodies, others.pose)
     clearance, reach = Clearance(whole.bodies, len(bodies), around), start
-    while not len(gaps := clearance.within(whole.pose, reach).gap):
+    while not len((gaps := clearance.within(whole.pose, reach)).gap):
         reach *= 4.0
-    return float(gaps.min())
+    least = int(np.argmin(gaps.gap))
+    return float(gaps.gap[least]), int(gaps.a[least])

@@ -56,7 +56,7 @@ class DomainRegion:
 
     @property
     def surfaces(self) -> tuple[Surface, ...]:
-        """Those of its pieces."""
+        """Surfaces of its pieces."""
         return tuple(piece.shape for piece in self.domain.pieces)
 
     def contains(self, points: FloatArray) -> BoolArray:

@@ -16,7 +16,7 @@ from rigidfluid.core.scene.swarm_tables import SeededTable, SwarmTable, TableSiz
 from rigidfluid.core.seeding.clearance import Surroundings
 from rigidfluid.core.seeding.draws import Draws
 from rigidfluid.core.seeding.listed_bodies import Row, columns, listed_bodies
-from rigidfluid.core.seeding.placement import Others, Placement, refuse_outside, smallest_gap
+from rigidfluid.core.seeding.placement import Others, Placement, nearest, refuse_outside
 from rigidfluid.core.seeding.regions import DomainRegion, region_of
 from rigidfluid.core.seeding.swarm import Swarm, swarm_of, with_fraction, with_rows
 from rigidfluid.errors import SceneError
@@ -26,16 +26,26 @@ from rigidfluid.registry import Registry
 @dataclass(frozen=True)
 class Seeded:
     """Seeded bodies: their ``tables`` as of the scene's bodies, the ``record`` of the swarm, and all ``bodies`` that
-    are there now."""
+    are there then."""
 
     tables: tuple[dict[str, Any], ...]
     record: SeededTable
     bodies: Others
 
 
-def seed(table: SwarmTable, at: str, draws: Draws, domain: Domain, others: Others, registry: Registry) -> Seeded:
-    """Bodies of a swarm in a domain among ``others``; raises SceneError or PluginError for what is wrong with its
-    table, and where there is not enough room."""
+@dataclass(frozen=True)
+class Occupied:
+    """A ``domain`` with the ``others`` that are in it before a swarm, and the parts that are installed."""
+
+    domain: Domain
+    others: Others
+    registry: Registry
+
+
+def seed(table: SwarmTable, at: str, draws: Draws, occupied: Occupied) -> Seeded:
+    """Bodies of a swarm in a domain among others; raises SceneError or PluginError for what is wrong with its table,
+    and where there is not enough room."""
+    domain, others, registry = occupied.domain, occupied.others, occupied.registry
     _check_table(table, at, domain.dimension)
     whole, region = DomainRegion(domain), region_of(table.region, domain, f"{at}.region", registry)
     if table.region is not None:
@@ -56,9 +66,18 @@ def seed(table: SwarmTable, at: str, draws: Draws, domain: Domain, others: Other
         pose = _listed(rows, columns(swarm.dimension)[:2], orientation)
     else:
         pose, way = Placement(swarm, region, surroundings, others, draws).placed(orientation, turning)
-    gap = smallest_gap(swarm.bodies, pose, others, surroundings, 2.0 * swarm.gap)
+    gap, body = nearest(swarm.bodies, pose, others, surroundings, 2.0 * swarm.gap)
+    if rows and not gap > 0.0:
+        raise _overlap(f"{at}.file, line {rows[body]['line']}", pose.position[body], gap)
     record = SeededTable(number=len(swarm), fraction=swarm.volume / region.volume, gap=gap, way=way)
     return Seeded(tuple(_tables(swarm, pose, rows, draws)), record, others.joined(swarm.bodies, pose))
+
+
+def _overlap(at: str, place: FloatArray, gap: float) -> SceneError:
+    """Error for a listed body that overlaps another one or a wall."""
+    found = f"a body at {place.tolist()} with a gap of {gap:.6g} to another one or to a wall"
+    remedy = f"Move it by more than {-gap:.6g}, or make it smaller."
+    return SceneError(at, found, "bodies inside the domain and clear of all others", remedy)
 
 
 def _check_table(table: SwarmTable, at: str, dimension: int) -> None:

@@ -80,7 +80,7 @@ class Swarm:
 
 
 def swarm_of(table: SwarmTable, at: str, dimension: int, draws: Draws, registry: Registry) -> Swarm:
-    """As many bodies of a table as a swarm may have, with shapes and sizes at random; raises SceneError or PluginError
+    """Bodies of a table, `MOST_BODIES` of them, with shapes and sizes at random; raises SceneError or PluginError
     for shapes that cannot be made."""
     shapes = tuple(
         build_part(BODY, shape, f"{at}.shape.{n}", registry, dimension) for n, shape in enumerate(table.shape)
@@ -90,8 +90,8 @@ def swarm_of(table: SwarmTable, at: str, dimension: int, draws: Draws, registry:
 
 
 def with_fraction(swarm: Swarm, fraction: float, region_volume: float) -> Swarm:
-    """As many of the bodies as come nearest to this ``fraction`` of the region's volume; raises SceneError if there are
-    too few, or if one body is more."""
+    """The first bodies, up to the number that comes nearest to this ``fraction`` of the region's volume; raises
+    SceneError if there are too few, or if one body is more."""
     reached = np.concatenate([[0.0], np.cumsum(swarm.volumes)]) / region_volume
     if reached[-1] < fraction:
         found = f"{fraction:g}, of which {MOST_BODIES} bodies fill {reached[-1]:.3g}"
@@ -105,10 +105,10 @@ def with_fraction(swarm: Swarm, fraction: float, region_volume: float) -> Swarm:
 
 
 def with_rows(swarm: Swarm, rows: Sequence[Row]) -> Swarm:
-    """As many of the bodies as there are ``rows`` of a file, with the shapes and sizes that these give."""
+    """The first bodies, one for each of the ``rows`` of a file, with the shapes and sizes that these give."""
     shape, factor = swarm.shape[: len(rows)].copy(), swarm.factor[: len(rows)].copy()
     for body, row in enumerate(rows):
-        at = f"{swarm.at}.file, body {body}"
+        at = f"{swarm.at}.file, line {row['line']}"
         if "shape" in row:
             shape[body] = _shape_number(row["shape"], len(swarm.shapes), at)
         factor[body] = row.get("size", factor[body])
