@@ -53,8 +53,8 @@ class Relaxation:
             if np.all(gaps.gap >= self.least):
                 return pose
             force = self._force(gaps, pose)
-            if np.vdot(force, velocity) > 0.0:
-                speed = np.linalg.norm(velocity) / np.linalg.norm(force)
+            if np.sum(force * velocity) > 0.0:
+                speed = np.sqrt(np.sum(velocity**2) / np.sum(force**2))
                 velocity = (1.0 - mixing) * velocity + mixing * speed * force
                 good += 1
                 if good > _PATIENCE:
