@@ -67,10 +67,11 @@ def domino_row(
     friction: float = 0.3,
     gap: float = GAP,
     floor: float = ON_THE_FLOOR,
+    damping: float = 1.0,
 ) -> Scene:
     """Dominoes that stand in a row; the first leans on its corner and falls on the next. ``end`` and steps are those of
-    a gravity of 10, and shorter by its root where it is more. ``friction`` is that of dominoes on each other. A wall
-    stands where the next domino would."""
+    a gravity of 10, and shorter by its root where it is more. ``friction`` is that of dominoes on each other, and
+    ``damping`` that of springs along surfaces. A wall stands where the next domino would."""
     weight, faster, pitch = THICKNESS * gravity, np.sqrt(GRAVITY / gravity), gap + THICKNESS
     stiffness = 3e3 * weight
     lift = DOMINO_SHELL - 0.5 * weight / stiffness
@@ -84,7 +85,7 @@ def domino_row(
     law = {"law": "spring-dashpot", "range": DOMINO_SHELL, "stiffness": stiffness, "restitution": 0.3}
     size = {"end": end * faster, "step": DOMINO_STEP * faster, "upper": [0.6 + count * pitch - 0.5 * THICKNESS, 2.0]}
     data = dry_scene({"substeps": 10}, *row, gravity=[0.0, -gravity], **size).to_dict()
-    sticking = {"tangential_stiffness": 0.8 * stiffness, "tangential_damping": 0.0}
+    sticking = {"tangential_stiffness": 0.8 * stiffness, "tangential_damping": damping}
     data["interaction"] = [
         law | ({"friction": friction} | sticking if friction > 0.0 else {}) | {"between": "pairs"},
         law | {"friction": floor} | sticking | {"between": "walls"},
