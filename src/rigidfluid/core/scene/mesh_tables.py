@@ -62,7 +62,10 @@ class MeshTable(Table):
     )
     quality: float = Field(default=0.25, gt=0, lt=1, description="Cell quality below which the mesh is regenerated [1]")
     refinements: int = Field(
-        default=5, ge=0, le=20, description="Number of times that a facet may be halved in a gap [1]"
+        default=5,
+        ge=0,
+        le=20,
+        description="Number of times that a facet may be halved in a gap; from five on, three more in films [1]",
     )
     order: Literal[1, 2] = Field(
         default=2, description="1: cells with straight edges; 2: curved along bodies and curved walls [1]"

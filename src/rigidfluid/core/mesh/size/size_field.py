@@ -18,6 +18,9 @@ ALONG_FILM = 0.12
 FINER_IN_FILMS = 0.125
 """Least edge wanted in a film over the smallest size for a gap."""
 
+RESOLVED = 5
+"""Fewest refinements with which films have finer cells; with fewer, gaps are kept coarse on purpose."""
+
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
@@ -51,7 +54,8 @@ def wanted_size(points: FloatArray, fluid_domain: FluidDomain, sizes: Sizes) -> 
     h_open is `size_away_from_gaps`, d₁ the distance to the nearest body, d₂ that to the next body or the nearest wall,
     so that g equals the gap on the segment that joins two surfaces and is larger off it. Two walls make no gap. h_min
     is `Sizes.smallest`, or ALONG_FILM √(R g) down to FINER_IN_FILMS of that, with R the least radius of curvature of a
-    body: cells may be flat in a film, but the pressure along it is to be resolved.
+    body: cells may be flat in a film, but the pressure along it is to be resolved. That is so from RESOLVED
+    refinements on.
     """
     first, second = fluid_domain.two_nearest_bodies(points, reach_of_bodies(sizes))
     return size_between(points, first, second, fluid_domain, sizes)
@@ -73,7 +77,7 @@ def size_between(
 def _least_in_gaps(gap: FloatArray, fluid_domain: FluidDomain, sizes: Sizes) -> FloatArray:
     """h_min in gaps of these widths (N,), with the least radius of curvature of all bodies that tell theirs."""
     radii = [radius for radius in (body.least_radius for body in fluid_domain.bodies) if radius is not None]
-    if not radii:
+    if not radii or sizes.refinements < RESOLVED:
         return np.full_like(gap, sizes.smallest)
     return np.clip(ALONG_FILM * np.sqrt(min(radii) * gap), FINER_IN_FILMS * sizes.smallest, sizes.smallest)
 
