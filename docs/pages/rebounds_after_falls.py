@@ -69,20 +69,20 @@ CASES = {
 """By the Stokes number that is given for the measurement."""
 RUNS = {
     "st100": (100, 0.4, 1.0),
-    "st152": (152, 0.4, 1.0),
-    "st742": (742, 0.4, 1.0),
     "st192": (192, 0.4, 1.0),
-    "st100_half": (100, 0.4, 0.5),
-    "st100_fine": (100, 0.25, 1.0),
+    "st742": (742, 0.4, 1.0),
 }
 """By folder: the case, cells at the sphere [R], and the step [R/(12 v)]."""
+OTHER = {"st100_half": (100, 0.4, 0.5), "st100_fine": (100, 0.25, 1.0)}
+"""The same of runs that end when the sphere has left the floor, at LEFT [s]."""
+LEFT = 0.045
 
 
 def scene(label: str) -> Scene:
     """The sphere above the floor, at the speed of `Case.thrown`."""
-    name, cells, step = RUNS[label]
+    name, cells, step = (RUNS | OTHER)[label]
     case = CASES[name]
-    radius = case.radius
+    end, radius = case.end if label in RUNS else LEFT, case.radius
     high, wide = round(TALL * radius, 6), round(WIDE * radius, 6)
     return rigidfluid.scene_from_dict(
         {
@@ -112,8 +112,8 @@ def scene(label: str) -> Scene:
                 "roughness": ROUGHNESS,
             },
             "mesh": {"size": round(5.0 * radius, 6), "size_body": round(cells * radius, 6)},
-            "time": {"end": case.end, "step": float(f"{step * radius / (12.0 * case.measured_speed):.3g}")},
-            "output": {"every": case.end},
+            "time": {"end": end, "step": float(f"{step * radius / (12.0 * case.measured_speed):.3g}")},
+            "output": {"every": end},
         }
     )
 
