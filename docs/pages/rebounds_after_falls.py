@@ -211,3 +211,16 @@ def legendre(stokes: float) -> float:
 def joseph(stokes: float) -> float:
     """Fit to the measurements of Joseph, Zenit, Hunt and Rosenwinkel."""
     return float(max(1.0 - 8.65 * stokes**-0.75, 0.0))
+
+
+def page(work: Work) -> Page:
+    """Speeds, restitutions and heights of the rebounds."""
+    found = {label: Rebound(label, work.run(label, scene(label))) for label in RUNS | OTHER}
+    main, other = {label: found[label] for label in RUNS}, {label: found[label] for label in OTHER}
+    first = found["st100"]
+    text = ABOUT.format(
+        cases=table(CASES_HEAD, [_case(name, case) for name, case in CASES.items()]),
+        figures=table(HEAD, [one.row for one in main.values()]),
+        other=table(OTHER_HEAD, [_other(one) for one in (first, *other.values())]),
+    )
+    return Page("Rebounds after falls at Stokes numbers from 100 to 742", text, {"": picture(main)})
