@@ -227,41 +227,44 @@ def picture(wet: dict[str, list[Impact]], dry: dict[str, list[Impact]]) -> Figur
 
 ABOUT = """A steel sphere of 12.7 mm (density 7.78) hits a wall at an angle in water with 37 % of glycerol (density
 1.091, viscosity .03 g/(cm s)), as in the measurements of Joseph and Hunt, J. Fluid Mech. 510 (2004) 71,
-doi:10.1017/S002211200400919X. Here spheres are thrown from a gap of one radius R in liquid at rest, at 20 cm/s towards
-the wall, and turn freely. There is no gravity. The Stokes number (ρ_s + ρ_f/2) D v/(9μ), v towards the wall before the
-impact, is {stokes}.
+doi:10.1017/S002211200400919X. Here spheres are thrown from a gap of one radius R in liquid at rest, at 20 cm/s
+towards the wall, and turn freely. There is no gravity. The Stokes number (ρ_s + ρ_f/2) D v/(9μ), v towards the wall
+before the impact, is {stokes}.
 
 Sphere, liquid and the friction of .02 of smooth steel in it are those with which Rettinger and Rüde repeated the
-measurements (arXiv:2003.01490; as in the inputs of waLBerla, `inputObliqueWetCollision.dat`). The two pairs of surfaces:
+measurements (arXiv:2003.01490; as in the inputs of waLBerla, `inputObliqueWetCollision.dat`). The two pairs of
+surfaces:
 
 * smooth: `roughness` 24 nm and `friction` .02;
 * rough: `roughness` 272 nm and `friction` .11, as between dry ones.
 
-The roughnesses and .11 are assumptions, of the size that bearings' balls and beads of steel have. The coefficients are
-put in, so a run shows only whether film, restitution and friction in one contact give what they should. All runs have
-one setting: law `normal`, range R/10, `epsilon = "auto"`, restitution e₀ = .97, cells of .4 R at the sphere, and steps in
-which it moves R/12. `auto` counts the whole speed, so the law is stiffer in impacts that slant more.
+The roughnesses and .11 are assumptions, of the size that bearings' balls and beads of steel have. The coefficients
+are put in, so a run shows only whether film, restitution and friction in one contact give what they should. All runs
+have one setting: law `normal`, range R/10, `epsilon = "auto"`, restitution e₀ = .97, cells of .4 R at the sphere, and
+steps in which it moves R/12. `auto` counts the whole speed, so the law is stiffer in impacts that slant more.
 
-ψ is the velocity along the wall of the sphere's point next to it, over the speed of the centre towards the wall before
-the impact. Both are read in the last step before range is reached, and the first after it is left.
+ψ is the velocity along the wall of the sphere's point next to it, over the speed of the centre towards the wall
+before the impact. Both are read in the last step before range is reached, and the first after it is left.
 
 {figures}
 
-`e` is the speed away from the wall over that towards it, {restitution}. The effective μ is (ψ in - ψ out)/[7/2 (1 + e)]:
-the friction of a dry sphere that loses as much slip while it slips all the time. Where a sphere sticks it is no
+`e` is the speed away from the wall over that towards it, {restitution}. The effective μ is (ψ in - ψ out)/[7/2 (1 +
+e)]: the friction of a dry sphere that loses as much slip while it slips all the time. Where a sphere sticks it is no
 coefficient.
 
 * **Smooth surfaces** hardly turn the sphere. Where they slip the effective μ is {smooth}. Joseph and Hunt found that
   liquid between smooth surfaces reduces friction drastically.
-* **Rough surfaces** follow the line of dry ones, with an effective μ of {rough}; they found a friction comparable to that
-  of dry impacts.
-* **In the liquid** the slip changes by {more} more than without it, where spheres slip. The liquid drags along the wall
-  during an impact, which lasts some milliseconds with this range. And the normal impulse turns the liquid that moves with
-  the sphere too, by the added mass 7 % more than the sphere alone far from walls; friction and spin grow with it.
-* **Spheres that stick** turn their slip back, ψ out < 0. Springs of 2/7 of the law's stiffness swing as fast along the
-  wall as across it, and give back nearly all of ψ. Elastic spheres are stiffer along their surfaces, by 2 (1 - ν)/(2 - ν)
-  of the stiffness across (Mindlin, J. Appl. Mech. 16 (1949) 259), and give back less; `tangential_stiffness` can be set.
+* **Rough surfaces** follow the line of dry ones, with an effective μ of {rough}; they found a friction comparable to
+  that of dry impacts.
+* **In the liquid** the slip changes by {more} more than without it, where spheres slip. The liquid drags along the
+  wall during an impact, which lasts some milliseconds with this range. And the normal impulse turns the liquid that
+  moves with the sphere too, by the added mass 7 % more than the sphere alone far from walls; friction and spin grow
+  with it.
+* **Spheres that stick** turn their slip back, ψ out < 0. Springs of 2/7 of the law's stiffness swing as fast along
+  the wall as across it, and give back nearly all of ψ. Elastic spheres are stiffer along their surfaces, by 2 (1 -
+  ν)/(2 - ν) of the stiffness across (Mindlin, J. Appl. Mech. 16 (1949) 259), and give back less;
+  `tangential_stiffness` can be set.
 
 Of the measured points no numbers were at hand, so nothing is compared with them one by one. The worst run creates
-{created} % of the energy that was put in. Other cells, steps and liquids were not run. The warning that boundary layers
-have less than two cells across holds for these runs."""
+{created} % of the energy that was put in. Other cells, steps and liquids were not run. The warning that boundary
+layers have less than two cells across holds for these runs."""

@@ -323,35 +323,35 @@ def picture(found: dict[str, Rebound]) -> Figure:
     return figure
 
 
-ABOUT = """Steel spheres (density 7.8) fall in silicone oils and bounce, in the set-ups of Gondret, Lance and Petit, Phys.
-Fluids 14 (2002) 643, doi:10.1063/1.1427920, with which Rettinger and Rüde compared (arXiv:2003.01490; as in the inputs of
-waLBerla, `inputSphereWallCollision.dat`). [The steel sphere in oil](steel_rebound.md) is another of these, at St 27. The
-Stokes number is ρ_s D v/(9μ), without the added mass, as it is given for the measurements.
+ABOUT = """Steel spheres (density 7.8) fall in silicone oils and bounce, in the set-ups of Gondret, Lance and Petit,
+Phys. Fluids 14 (2002) 643, doi:10.1063/1.1427920, with which Rettinger and Rüde compared (arXiv:2003.01490; as in the
+inputs of waLBerla, `inputSphereWallCollision.dat`). [The steel sphere in oil](steel_rebound.md) is another of these,
+at St 27. The Stokes number is ρ_s D v/(9μ), without the added mass, as it is given for the measurements.
 
 {cases}
 
-Not all had settled in the measurement: by the usual fit to drag the last two would fall faster in the end. So a sphere
-is thrown from a gap of 10 R, at the speed from which a steady drag by this fit and the added mass lead to the measured
-one at the floor. The liquid is at rest then. Its drag on a sphere that was just thrown is larger, and spheres arrive
-slower than measured, by {slower}.
+Not all had settled in the measurement: by the usual fit to drag the last two would fall faster in the end. So a
+sphere is thrown from a gap of 10 R, at the speed from which a steady drag by this fit and the added mass lead to the
+measured one at the floor. The liquid is at rest then. Its drag on a sphere that was just thrown is larger, and
+spheres arrive slower than measured, by {slower}.
 
-All runs have the setting of [the throws](rebound_over_stokes.md): law `normal`, restitution .97, `roughness` 2 µm, range
-R/10, `epsilon = "auto"`, cells of .4 R at the sphere and steps in which it moves R/12. The box is 20 R wide, with slip
-at its sides, and 24 R high. Nothing is changed from case to case.
+All runs have the setting of [the throws](rebound_over_stokes.md): law `normal`, restitution .97, `roughness` 2 µm,
+range R/10, `epsilon = "auto"`, cells of .4 R at the sphere and steps in which it moves R/12. The box is 20 R wide,
+with slip at its sides, and 24 R high. Nothing is changed from case to case.
 
 {figures}
 
-e is the highest speed upwards beyond range over v. After the impact the sphere meets its own wake and slows down at
-first much faster than by weight and steady drag, so that e depends on where it is read. A parabola through the first
-third of the rise, where a camera would see it, gives the next column. The two fits to measurements (Legendre, Daniel
-and Guiraud, Phys. Fluids 17 (2005) 097105, doi:10.1063/1.2010527; and the one often given for Joseph, Zenit, Hunt and
-Rosenwinkel, J. Fluid Mech. 433 (2001) 329, doi:10.1017/S0022112001003470) have the St with the added mass here. The
-parabola's e is {above} off the first. That they are below is known from [the throws](rebound_over_stokes.md), where the
-measurement at St 27 lies above them too.
+e is the highest speed upwards beyond range over v. After the impact the sphere slows down at first much faster than
+by weight and steady drag, in liquid that still follows it down, so that e depends on where it is read. A parabola
+through the first third of the rise, where a camera would see it, gives the next column. The two fits to measurements
+(Legendre, Daniel and Guiraud, Phys. Fluids 17 (2005) 097105, doi:10.1063/1.2010527; and the one often given for
+Joseph, Zenit, Hunt and Rosenwinkel, J. Fluid Mech. 433 (2001) 329, doi:10.1017/S0022112001003470) have the St with
+the added mass here. The parabola's e is {above} off the first. That they are below is known from [the
+throws](rebound_over_stokes.md), where the measurement at St 27 lies above them too.
 
 **Heights are no comparison yet.** Of the measured heights and times of these cases no numbers were at hand; the table
-says what `rigidfluid` gives, so that who has the curves can compare. The roughness of 2 µm fits the height at St 27, and
-is no measured one.
+says what `rigidfluid` gives, so that who has the curves can compare. The roughness of 2 µm fits the height at St 27,
+and is no measured one.
 
 ## Cells and steps
 
@@ -360,5 +360,6 @@ Runs that end when the sphere has left the floor:
 {other}
 
 Other cases were not repeated. Cells of .4 R are far from resolving the boundary layer at the larger St, and
-`rigidfluid` warns of it; [settling spheres](settling_spheres.md) of such cells have speeds within 1 % at Re 280 and 360.
-Beyond Re 280 wakes are unsteady. These spheres move sideways by {aside} R at most, too briefly for that to grow."""
+`rigidfluid` warns of it; [settling spheres](settling_spheres.md) with cells of .32 R have speeds within 1 % of the
+measured at Re 280 and 360. Beyond Re 280 wakes are unsteady. These spheres move sideways by {aside} R at most, too
+briefly for that to grow."""
