@@ -23,13 +23,15 @@ OVER = 1.05
 @dataclass(frozen=True)
 class Case:
     """A measured fall: ``diameter`` [cm], ``density`` and ``viscosity`` of the oil [g, cm, s], Reynolds number of the
-    measured speed before the impact, and the time after which the run ends [s]."""
+    measured speed before the impact, the time after which the run ends [s], and what the speed at the start is ``over``
+    that for a steady drag [1]."""
 
     diameter: float
     density: float
     viscosity: float
     reynolds: float
     end: float
+    over: float = OVER
 
     @property
     def radius(self) -> float:
@@ -48,12 +50,12 @@ class Case:
 
     @property
     def thrown(self) -> float:
-        """Speed at the start: OVER times that by which a steady drag brings the sphere to the floor at the measured one
-        [cm/s]."""
+        """Speed at the start: ``over`` times that by which a steady drag brings the sphere to the floor at the
+        measured one [cm/s]."""
         squared, steps = self.measured_speed**2, 1000
         for _ in range(steps):
             squared -= 2.0 * self._acceleration(float(np.sqrt(squared))) * FALL * self.radius / steps
-        return round(OVER * float(np.sqrt(squared)), 1)
+        return round(self.over * float(np.sqrt(squared)), 1)
 
     @property
     def settled(self) -> float:
@@ -73,22 +75,14 @@ class Case:
 
 
 CASES = {
-    100: Case(0.4, 0.953, 0.2, 110.0, 0.09),
+    100: Case(0.4, 0.953, 0.2, 110.0, 0.09, over=1.0),
     152: Case(0.3, 0.935, 0.1, 164.0, 0.078),
     192: Case(0.6, 0.953, 0.2, 212.0, 0.115),
     742: Case(0.5, 0.92, 0.05, 788.0, 0.125),
 }
 """By the Stokes number that is given for the measurement."""
-RUNS = {
-    "st100": (100, 0.4, 1.0),
-    "st152": (152, 0.4, 1.0),
-    "st192": (192, 0.4, 1.0),
-    "st742": (742, 0.4, 1.0),
-}
-"""By folder: the case, cells at the sphere [R], and the step [R/(12 v)]."""
-OTHER = {"st100_half": (100, 0.4, 0.5), "st100_fine": (100, 0.25, 1.0)}
-"""The same of runs that end when the sphere has left the floor, at LEFT [s]."""
-LEFT = 0.045
+CELLS, STEP = 0.4, 12.0
+"""Cells at the sphere [R], and steps in which a sphere at the measured speed moves R."""
 EARLY = 2.5
 """Time after the impact until which a parabola is put through heights [R/v]."""
 MEASURED = np.array(
@@ -120,11 +114,10 @@ TOP, HEIGHT, BOUNCE = 0.0377, 2.489, 0.876
 through the first four heights over the speed before."""
 
 
-def scene(label: str) -> Scene:
+def scene(name: int) -> Scene:
     """The sphere above the floor, at the speed of `Case.thrown`."""
-    name, cells, step = (RUNS | OTHER)[label]
     case = CASES[name]
-    end, radius = case.end if label in RUNS else LEFT, case.radius
+    radius = case.radius
     high, wide = round(TALL * radius, 6), round(WIDE * radius, 6)
     return rigidfluid.scene_from_dict(
         {
@@ -153,9 +146,9 @@ def scene(label: str) -> Scene:
                 "restitution": DRY,
                 "roughness": ROUGHNESS,
             },
-            "mesh": {"size": round(5.0 * radius, 6), "size_body": round(cells * radius, 6)},
-            "time": {"end": end, "step": float(f"{step * radius / (12.0 * case.measured_speed):.3g}")},
-            "output": {"every": end},
+            "mesh": {"size": round(5.0 * radius, 6), "size_body": round(CELLS * radius, 6)},
+            "time": {"end": case.end, "step": float(f"{radius / (STEP * case.measured_speed):.3g}")},
+            "output": {"every": case.end},
         }
     )
 
@@ -164,13 +157,8 @@ def scene(label: str) -> Scene:
 class Rebound:
     """Figures of a run [cm, s]."""
 
-    label: str
+    case: Case
     run: Run
-
-    @property
-    def case(self) -> Case:
-        """Measured fall."""
-        return CASES[(RUNS | OTHER)[self.label][0]]
 
     @cached_property
     def bodies(self) -> dict[str, np.ndarray]:
@@ -216,19 +204,13 @@ class Rebound:
     @property
     def whole_stokes(self) -> float:
         """St = (ρ_s + ρ_f/2) D v/(9μ)."""
-        return self.stokes * (1.0 + 0.5 * self.case.density / STEEL)
+        return whole_stokes(self.case, self.stokes)
 
     @property
     def restitution(self) -> float:
         """Highest speed upwards beyond range, over that before."""
         away = self.bodies["vy"][self.impact :][self.gap[self.impact :] > 0.1 * self.case.radius]
         return float(away.max()) / self.speed
-
-    @property
-    def later(self) -> float:
-        """Speed upwards at a gap of R/2, over that before."""
-        way = slice(self.impact, self.top + 1)
-        return float(np.interp(0.5 * self.case.radius, self.gap[way], self.bodies["vy"][way])) / self.speed
 
     @property
     def aside(self) -> float:
@@ -247,24 +229,6 @@ class Rebound:
         )
         return float(np.polyfit(time[early], self.gap[self.impact : self.top][early], 2)[1]) / self.speed
 
-    @property
-    def row(self) -> tuple[str, ...]:
-        """Figures of the run."""
-        energy = self.run.summary["energy"]
-        return (
-            str(RUNS[self.label][0]),
-            f"{self.speed:.1f} ({self.speed / self.case.measured_speed - 1.0:+.1%})",
-            f"{self.stokes:.0f}",
-            f"{self.restitution:.3f}",
-            f"{self.fitted:.3f}",
-            f"{DRY * legendre(self.whole_stokes):.3f}",
-            f"{DRY * joseph(self.whole_stokes):.3f}",
-            f"{self.height:.2f}",
-            f"{self.rise:.4f}",
-            f"{100.0 * energy['created']:.2f}, {100.0 * energy['lost']:.2f}",
-            f"{self.run.cpu_seconds:.0f}",
-        )
-
 
 def legendre(stokes: float) -> float:
     """Fit of Legendre, Daniel and Guiraud to measurements, over the dry restitution."""
@@ -280,31 +244,45 @@ CASES_HEAD = ("St given", "Re", "D [cm]", "density of the oil [g/cm³]", "viscos
 CASES_HEAD += ("settled by the fit [cm/s]", "thrown at [cm/s]")
 HEAD = ("St given", "v at a gap of R/2 [cm/s] (off the measured)", "St", "e", "e by a parabola", ".97 exp(-35/St)")
 HEAD += (".97 (1 - 8.65 St^-.75)", "height over D", "top after the impact [s]", "created, lost [%]", "CPU time [s]")
-OTHER_HEAD = (
-    "cells at the sphere [R]",
-    "step [R/v]",
-    "v at a gap of R/2 [cm/s]",
-    "e",
-    "speed at a gap of R/2 after, over v",
-)
-OTHER_HEAD += ("CPU time [s]",)
 
 
 def page(work: Work) -> Page:
     """Speeds, restitutions and heights of the rebounds."""
-    found = {label: Rebound(label, work.run(label, scene(label))) for label in RUNS | OTHER}
-    main = {label: found[label] for label in RUNS}
+    found = {name: Rebound(case, work.run(f"st{name}", scene(name))) for name, case in CASES.items()}
+    first = found[152]
     text = ABOUT.format(
-        cases=table(CASES_HEAD, [_case(name, CASES[name]) for name, _, _ in RUNS.values()]),
-        figures=table(HEAD, [one.row for one in main.values()]),
-        compared=compared(found["st152"]),
-        other=table(OTHER_HEAD, [_other(found[label]) for label in ("st100", *OTHER)]),
-        measured_above=f"{BOUNCE - DRY * legendre(152.0 * (1.0 + 0.5 * CASES[152].density / STEEL)):.2f}",
-        sensitivity=f"{(1.0 + DRY) * np.log(2.0) / found['st152'].whole_stokes:.3f}",
-        above=_between([one.fitted - DRY * legendre(one.whole_stokes) for one in main.values()], "{:+.2f}"),
-        aside=f"{max(one.aside for one in main.values()):.2g}",
+        cases=table(CASES_HEAD, [_case(name, case) for name, case in CASES.items()]),
+        figures=table(HEAD, [_row(name, one) for name, one in found.items()]),
+        compared=compared(first),
+        measured_above=f"{BOUNCE - DRY * legendre(whole_stokes(first.case, first.case.measured_stokes)):.2f}",
+        above=_between([one.fitted - DRY * legendre(one.whole_stokes) for one in found.values()], "{:.2f}"),
+        sensitivity=f"{(1.0 + DRY) * np.log(2.0) / first.whole_stokes:.3f}",
+        aside=f"{max(one.aside for one in found.values()):.1g}",
+        created=f"{max(100.0 * one.run.summary['energy']['created'] for one in found.values()):.2f}",
     )
-    return Page("Rebounds after falls at Stokes numbers from 100 to 742", text, {"": picture(main)})
+    return Page("Rebounds after falls at Stokes numbers from 100 to 742", text, {"": picture(found)})
+
+
+def whole_stokes(case: Case, stokes: float) -> float:
+    """St with the added mass, from that without it."""
+    return stokes * (1.0 + 0.5 * case.density / STEEL)
+
+
+def _row(name: int, one: Rebound) -> tuple[str, ...]:
+    energy = one.run.summary["energy"]
+    return (
+        str(name),
+        f"{one.speed:.1f} ({one.speed / one.case.measured_speed - 1.0:+.1%})",
+        f"{one.stokes:.0f}",
+        f"{one.restitution:.3f}",
+        f"{one.fitted:.3f}",
+        f"{DRY * legendre(one.whole_stokes):.3f}",
+        f"{DRY * joseph(one.whole_stokes):.3f}",
+        f"{one.height:.3f}",
+        f"{one.rise:.4f}",
+        f"{100.0 * energy['created']:.2f}, {100.0 * energy['lost']:.2f}",
+        f"{one.run.cpu_seconds:.0f}",
+    )
 
 
 def compared(one: Rebound) -> str:
@@ -333,30 +311,18 @@ def _case(name: int, case: Case) -> tuple[str, ...]:
     )
 
 
-def _other(one: Rebound) -> tuple[str, ...]:
-    _, cells, step = (RUNS | OTHER)[one.label]
-    return (
-        f"{cells:g}",
-        f"1/{12.0 / step:g}",
-        f"{one.speed:.2f}",
-        f"{one.restitution:.3f}",
-        f"{one.later:.3f}",
-        f"{one.run.cpu_seconds:.0f}",
-    )
-
-
 def _between(values: list[float], form: str) -> str:
     """Smallest and largest."""
     return " to ".join(form.format(end(values)) for end in (min, max))
 
 
-def picture(found: dict[str, Rebound]) -> Figure:
+def picture(found: dict[int, Rebound]) -> Figure:
     """Gap over the time since the impact, and restitution over the Stokes number."""
     figure = Figure(figsize=(9.5, 4.2), dpi=120, layout="constrained")
     left, right = figure.subplots(1, 2)
-    for label, one in found.items():
+    for name, one in found.items():
         time = one.bodies["time"] - one.bodies["time"][one.impact]
-        left.plot(time, one.gap / one.case.diameter, lw=1.2, label=f"St {RUNS[label][0]}")
+        left.plot(time, one.gap / one.case.diameter, lw=1.2, label=f"St {name}")
     left.plot(MEASURED[:, 0] / 1e3, MEASURED[:, 1] / 10.0 / CASES[152].diameter, "ko", ms=3.0, label="measured, St 152")
     left.set(xlim=(-0.03, 0.1), ylim=(0.0, None), xlabel="time after the impact [s]", ylabel="gap over D")
     left.legend(fontsize=8)
@@ -383,7 +349,7 @@ at St 27. The Stokes number is ρ_s D v/(9μ), without the added mass, as it is 
 Not all have settled when they hit: by the usual fit to drag, C_D = 24/Re (1 + .15 Re^.687), the last two would become
 faster. So a sphere is thrown from a gap of 10 R, at 1.05 times the speed from which drag by this fit and the added
 mass lead to the measured speed at the floor. The 5 % are for the liquid, which is at rest then and resists more than
-later. They were chosen after a first run at St 100, which arrived 5 % slower without them.
+later. They were added after the run at St 100, which is without them and arrived that much slower.
 
 All runs have the setting of [the throws](rebound_over_stokes.md): law `normal`, restitution .97, `roughness` 2 µm,
 range R/10, `epsilon = "auto"`, cells of .4 R at the sphere and steps in which it moves R/12. The box is 20 R wide,
@@ -412,12 +378,7 @@ by {sensitivity}. So this height is closer to a prediction than the one at St 27
 
 Of St 100, 192 and 742 no measured heights were at hand. Their rows can be compared by who has the curves.
 
-## Cells and steps
-
-Runs that end when the sphere has left the floor:
-
-{other}
-
-Other cases were not repeated. Cells of .4 R are far from resolving the boundary layer at the larger St, and
-`rigidfluid` warns of it; [settling spheres](settling_spheres.md) with cells of .32 R have speeds within 1 % of the
-measured at Re 280 and 360. Beyond Re 280 wakes are unsteady. These spheres move sideways by {aside} R at most."""
+The worst run creates {created} % of the energy that was put in. Neither cells nor steps were varied here; the throws
+were at St 17 alone. Cells of .4 R are far from resolving the boundary layer at the larger St, and `rigidfluid` warns
+of it; [settling spheres](settling_spheres.md) with cells of .32 R have speeds within 1 % of the measured at Re 280
+and 360. Beyond Re 280 wakes are unsteady. These spheres move sideways by {aside} R at most."""
