@@ -14,8 +14,8 @@ from rigidfluid.core.scene.scene import Scene
 
 STEEL, GRAVITY = 7.8, 981.0
 ROUGHNESS, DRY, DECAY = 2e-4, 0.97, 35.0
-FALL, TALL, WIDE = 10.0, 24.0, 10.0
-"""Gap under the sphere at the start, height of the box and half its width [R]."""
+FALL, ABOVE, WIDE = 10.0, 14.0, 10.0
+"""Gap under the sphere at the start, what the box is higher, and half its width [R]."""
 OVER = 1.05
 """Share of the speed at the start that the liquid, at rest then, takes by more than a steady drag."""
 
@@ -23,8 +23,8 @@ OVER = 1.05
 @dataclass(frozen=True)
 class Case:
     """A measured fall: ``diameter`` [cm], ``density`` and ``viscosity`` of the oil [g, cm, s], Reynolds number of the
-    measured speed before the impact, the time after which the run ends [s], and what the speed at the start is ``over``
-    that for a steady drag [1]."""
+    measured speed before the impact, the time after which the run ends [s], what the speed at the start is ``over``
+    that for a steady drag [1], and the gap from which it ``fall``s [R]."""
 
     diameter: float
     density: float
@@ -32,6 +32,7 @@ class Case:
     reynolds: float
     end: float
     over: float = OVER
+    fall: float = FALL
 
     @property
     def radius(self) -> float:
@@ -54,7 +55,7 @@ class Case:
         measured one [cm/s]."""
         squared, steps = self.measured_speed**2, 1000
         for _ in range(steps):
-            squared -= 2.0 * self._acceleration(float(np.sqrt(squared))) * FALL * self.radius / steps
+            squared -= 2.0 * self._acceleration(float(np.sqrt(squared))) * self.fall * self.radius / steps
         return round(self.over * float(np.sqrt(squared)), 1)
 
     @property
@@ -81,6 +82,8 @@ CASES = {
     742: Case(0.5, 0.92, 0.05, 788.0, 0.045),
 }
 """By the Stokes number that is given for the measurement."""
+LONG = Case(0.3, 0.935, 0.1, 164.0, 0.068, over=1.0, fall=20.0)
+"""That at St 152 from twice as high."""
 CELLS, STEP = 0.4, 12.0
 """Cells at the sphere [R], and steps in which a sphere at the measured speed moves R."""
 EARLY = 2.5
@@ -114,15 +117,14 @@ TOP, HEIGHT, BOUNCE = 0.0377, 2.489, 0.876
 through the first four heights over the speed before."""
 
 
-def scene(name: int) -> Scene:
+def scene(case: Case) -> Scene:
     """The sphere above the floor, at the speed of `Case.thrown`."""
-    case = CASES[name]
     radius = case.radius
-    high, wide = round(TALL * radius, 6), round(WIDE * radius, 6)
+    high, wide = round((case.fall + ABOVE) * radius, 6), round(WIDE * radius, 6)
     return rigidfluid.scene_from_dict(
         {
             "scene": {
-                "name": f"steel_st{name}",
+                "name": f"steel_st{case.measured_stokes:.0f}",
                 "dimension": 3,
                 "units": {"length": "cm", "time": "s", "mass": "g"},
             },
@@ -135,7 +137,7 @@ def scene(name: int) -> Scene:
                     "type": "sphere",
                     "radius": radius,
                     "density": STEEL,
-                    "position": [0.0, round((FALL + 1.0) * radius, 6), 0.0],
+                    "position": [0.0, round((case.fall + 1.0) * radius, 6), 0.0],
                     "velocity": [0.0, -case.thrown, 0.0],
                 }
             ],
@@ -253,7 +255,7 @@ HEAD += (".97 (1 - 8.65 St^-.75)", "height over D", "top after the impact [s]", 
 
 def page(work: Work) -> Page:
     """Speeds, restitutions and heights of the rebounds."""
-    found = {name: Rebound(case, work.run(f"st{name}", scene(name))) for name, case in CASES.items()}
+    found = {name: Rebound(case, work.run(f"st{name}", scene(case))) for name, case in CASES.items()}
     first = found[152]
     text = ABOUT.format(
         cases=table(CASES_HEAD, [_case(name, case) for name, case in CASES.items()]),
