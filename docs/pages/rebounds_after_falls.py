@@ -80,7 +80,7 @@ CASES = {
     152: Case(0.3, 0.935, 0.1, 164.0, 0.078),
 }
 """By the Stokes number that is given for the measurement."""
-LONG = Case(0.3, 0.935, 0.1, 164.0, 0.068, over=1.0, fall=20.0)
+LONG = Case(0.3, 0.935, 0.1, 164.0, 0.063, over=1.0, fall=20.0)
 """That at St 152 from twice as high."""
 CELLS, STEP = 0.4, 12.0
 """Cells at the sphere [R], and steps in which a sphere at the measured speed moves R."""
@@ -342,7 +342,7 @@ def picture(found: dict[int, Rebound]) -> Figure:
         time = one.bodies["time"] - one.turned
         left.plot(time, one.gap / one.case.diameter, lw=1.2, label=f"St {name}")
     left.plot(MEASURED[:, 0] / 1e3, MEASURED[:, 1] / 10.0 / CASES[152].diameter, "ko", ms=3.0, label="measured, St 152")
-    left.set(xlim=(-0.03, 0.1), ylim=(0.0, None), xlabel="time after the impact [s]", ylabel="gap over D")
+    left.set(xlim=(-0.03, 0.06), ylim=(0.0, None), xlabel="time after the impact [s]", ylabel="gap over D")
     left.legend(fontsize=8)
     stokes = np.geomspace(40.0, 1500.0, 200)
     right.plot(stokes, [DRY * legendre(st) for st in stokes], "k-", lw=1.0, label=".97 exp(-35/St)")
@@ -353,6 +353,7 @@ def picture(found: dict[int, Rebound]) -> Figure:
     right.set(
         xscale="log", xlim=(40.0, 1500.0), ylim=(0.3, 1.0), xlabel="Stokes number", ylabel="effective restitution"
     )
+    right.plot([whole_stokes(CASES[152], 152.0)], [BOUNCE], "k*", ms=11.0, label="measured, by a parabola")
     right.legend(fontsize=8)
     return figure
 
