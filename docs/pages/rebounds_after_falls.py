@@ -379,7 +379,7 @@ later. They were added after the run at St 100, which is without them and arrive
 
 All runs have the setting of [the throws](rebound_over_stokes.md): law `normal`, restitution .97, `roughness` 2 µm,
 range R/10, `epsilon = "auto"`, cells of .4 R at the sphere and steps in which it moves R/12. The box is 20 R wide,
-with slip at its sides, and 24 R high. Nothing is changed from case to case.
+with slip at its sides, and 24 R high. Nothing else is changed from case to case.
 
 {figures}
 
@@ -410,9 +410,9 @@ by {sensitivity}. So this e is closer to a prediction than that at St 27.
 Of St 100 and 742 no measured heights were at hand, and the run at St 742 ends before the top. The case at St 192 (6
 mm, .953, .2; Re 212) was not run.
 
-The worst run creates {created} % of the energy that was put in. Neither cells nor steps were varied here; the throws
-were at St 17 alone. Cells of .4 R are far from resolving the boundary layer at the larger St, and `rigidfluid` warns
-of it. At St 742 it also warns that stabilisation takes more than 5 % of the energy, since cells in the wake are too
-coarse; that row is a restitution in a poorly resolved flow. [Settling spheres](settling_spheres.md) with cells of .32
-R have speeds within 1 % of the measured at Re 280 and 360. Beyond Re 280 wakes are unsteady. These spheres move
-sideways by {aside} R at most."""
+The worst run creates {created} % of the energy that was put in. Neither cells nor steps were varied here; of the
+throws only that at St 17 was repeated with others. Cells of .4 R are far from resolving the boundary layer at the
+larger St, and `rigidfluid` warns of it. At St 742 it also warns that stabilisation takes more than 5 % of the energy,
+since cells in the wake are too coarse; that row is a restitution in a poorly resolved flow. [Settling
+spheres](settling_spheres.md) with cells of .32 R have speeds within 1 % of the measured at Re 280 and 360. Beyond Re
+280 wakes are unsteady. These spheres move sideways by {aside} R at most."""
