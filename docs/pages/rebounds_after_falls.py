@@ -346,10 +346,10 @@ def picture(found: dict[int, Rebound]) -> Figure:
     figure = Figure(figsize=(9.5, 4.2), dpi=120, layout="constrained")
     left, right = figure.subplots(1, 2)
     for name, one in found.items():
-        time = one.bodies["time"] - one.turned
+        time = 1e3 * (one.bodies["time"] - one.turned)
         left.plot(time, one.gap / one.case.diameter, lw=1.2, label=f"St {name}")
-    left.plot(MEASURED[:, 0] / 1e3, MEASURED[:, 1] / 10.0 / CASES[152].diameter, "ko", ms=3.0, label="measured, St 152")
-    left.set(xlim=(-0.03, 0.06), ylim=(0.0, None), xlabel="time after the impact [s]", ylabel="gap over D")
+    left.plot(MEASURED[:, 0], MEASURED[:, 1] / 10.0 / CASES[152].diameter, "ko", ms=3.0, label="measured, St 152")
+    left.set(xlim=(-30.0, 60.0), ylim=(0.0, None), xlabel="time after the impact [ms]", ylabel="gap over D")
     left.legend(fontsize=8)
     stokes = np.geomspace(40.0, 1500.0, 200)
     right.plot(stokes, [DRY * legendre(st) for st in stokes], "k-", lw=1.0, label=".97 exp(-35/St)")

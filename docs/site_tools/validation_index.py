@@ -38,6 +38,7 @@ SUBJECTS = {
         "steel_rebound": "A steel sphere bounces in oil: height and time compared with Gondret et al. (2002)",
         "rebound_over_stokes": "Rebound over the Stokes number from 5 to 1,000, in 3D and 2D",
         "rebounds_after_falls": "Rebounds after falls at St 100, 152 and 742: one compared with Gondret et al. (2002)",
+        "oblique_in_liquid": "Oblique impacts in a liquid: angles compared with those of dry impacts",
         "resistances": "Spheres in narrow gaps: force compared with the exact series",
         "explicit_coupling": "Light bodies, contacts and new meshes: one system compared with explicit coupling",
         "stability": "Extreme contacts and densities: which runs succeed, and which fail",
