@@ -200,8 +200,8 @@ def _row(one: Impact, dry: Impact) -> tuple[str, ...]:
 
 
 def _between(values: list[float], form: str) -> str:
-    """Smallest and largest."""
-    return " to ".join(form.format(end(values)) for end in (min, max))
+    """Smallest and largest, or the one."""
+    return " to ".join(dict.fromkeys(form.format(end(values)) for end in (min, max)))
 
 
 def _more(wet: Impact, dry: Impact) -> float:
@@ -240,8 +240,9 @@ surfaces:
 
 The roughnesses and .11 are assumptions, of the size that bearings' balls and beads of steel have. The coefficients
 are put in, so a run shows only whether film, restitution and friction in one contact give what they should. All runs
-have one setting: law `normal`, range R/10, `epsilon = "auto"`, restitution e₀ = .97, cells of .4 R at the sphere, and
-steps in which it moves R/12. `auto` counts the whole speed, so the law is stiffer in impacts that slant more.
+have one setting: law `normal`, range R/10, `epsilon = "auto"`, restitution e₀ = .97, cells of .4 R at the sphere that
+grow by .4, and steps in which it moves R/12. `auto` counts the whole speed, so the law is stiffer in impacts that
+slant more.
 
 ψ is the velocity along the wall of the sphere's point next to it, over the speed of the centre towards the wall
 before the impact. Both are read in the last step before range is reached, and the first after it is left.
@@ -254,16 +255,16 @@ coefficient.
 
 * **Smooth surfaces** hardly turn the sphere. Where they slip the effective μ is {smooth}. Joseph and Hunt found that
   liquid between smooth surfaces reduces friction drastically.
-* **Rough surfaces** follow the line of dry ones, with an effective μ of {rough}; they found a friction comparable to
-  that of dry impacts.
+* **Rough surfaces** come near the line of dry ones, with an effective μ of {rough}; they found a friction comparable
+  to that of dry impacts.
 * **In the liquid** the slip changes by {more} more than without it, where spheres slip. The liquid drags along the
   wall during an impact, which lasts some milliseconds with this range. And the normal impulse turns the liquid that
   moves with the sphere too, by the added mass 7 % more than the sphere alone far from walls; friction and spin grow
   with it.
 * **Spheres that stick** turn their slip back, ψ out < 0. Springs of 2/7 of the law's stiffness swing as fast along
-  the wall as across it, and give back nearly all of ψ. Elastic spheres are stiffer along their surfaces, by 2 (1 -
-  ν)/(2 - ν) of the stiffness across (Mindlin, J. Appl. Mech. 16 (1949) 259), and give back less;
-  `tangential_stiffness` can be set.
+  the wall as across it, and give back nearly all of ψ where the sphere does not slip at all, as at ψ in = .3. Elastic
+  spheres are stiffer along their surfaces, by 2 (1 - ν)/(2 - ν) of the stiffness across (Mindlin, J. Appl. Mech. 16
+  (1949) 259), and give back less; `tangential_stiffness` can be set.
 
 Of the measured points no numbers were at hand, so nothing is compared with them one by one. The worst run creates
 {created} % of the energy that was put in. Other cells, steps and liquids were not run. The warning that boundary
