@@ -53,6 +53,7 @@ SUBJECTS = {
         "dumbbell_in_shear": "Two balls on a rod turn in shear: period compared with the exact one",
     },
     "Meshes and distances": {
+        "seeding": "Seeded swarms: fraction, gaps, radial distribution and cost",
         "insertion": "Bodies inserted into domains: cell quality and failures",
         "detectors": "Gaps among ellipses: error of each detector against its time",
         "distance_field": "Distance to a circle over a mesh: orders of convergence",
