@@ -26,7 +26,7 @@ DENSE: dict[str, tuple[int, Table, float]] = {
 }
 """Dimension, shape and fraction of swarms in a box of side 1."""
 
-FRACTIONS, SEEDS, RADIUS = (0.1, 0.2, 0.28), 4, 0.035
+FRACTIONS, SEEDS, RADIUS = (0.1, 0.2, 0.28), 6, 0.025
 """Fractions of inserted balls whose neighbours are counted, seeds for each, and their radius."""
 
 EDGES = 2.0 * RADIUS * np.linspace(1.0, 2.5, 31)
@@ -135,17 +135,18 @@ def _draw(axes: Any, scene: Scene) -> None:
     axes.set(xlim=(0, 1), ylim=(0, 1), aspect="equal", xticks=[], yticks=[], title="disks and ellipses, φ = 0.7")
 
 
-ABOUT = """Bodies are seeded by [`[[swarm]]`](../howto/seed-bodies.md) in a box of side 1, with gaps of at least .01 of the bounding radius. The
-smallest gap of balls is that of the formula |x - x'| - r - r', and at the faces; of other shapes it is that of the exact detector, which tests
-compare with the naive one. Seconds are CPU time of one core to load the scene.
+ABOUT = """Bodies are seeded by [`[[swarm]]`](../howto/seed-bodies.md) in a box of side 1, with gaps of at least .01 of the
+bounding radius. The smallest gap of balls is that of the formula |x - x'| - r - r', and at the faces; of other shapes it
+is that of the exact detector, which tests compare with the naive one. Seconds are CPU time of one core to load the scene.
 
 """
 NEIGHBOURS = """
 
-Balls that are inserted one by one are not a fluid in equilibrium, but near it where they are thin: their distributions of neighbours differ in
-the second order of the density (B. Widom, J. Chem. Phys. 44 (1966) 3888, doi:10.1063/1.1726548). The distribution g(r) counts neighbours of
-balls that are farther from the walls than the largest r, with {seeds} seeds; g at contact is that of a line through the first four shells, of .05
-of the diameter. Hard spheres in equilibrium have (1 - φ/2)/(1 - φ)³ at contact (N. F. Carnahan and K. E. Starling, J. Chem. Phys. 51 (1969) 635,
-doi:10.1063/1.1672048).
+Balls that are inserted one by one are not a fluid in equilibrium, but near it where they are thin: their distributions
+of neighbours differ in the second order of the density (B. Widom, J. Chem. Phys. 44 (1966) 3888,
+doi:10.1063/1.1726548). The distribution g(r) counts neighbours of balls that are farther from the walls than the largest
+r, with {seeds} seeds; g at contact is that of a line through the first four shells, each .05 of the diameter wide. Hard
+spheres in equilibrium have (1 - φ/2)/(1 - φ)³ at contact (N. F. Carnahan and K. E. Starling, J. Chem. Phys. 51 (1969)
+635, doi:10.1063/1.1672048).
 
 """
