@@ -42,7 +42,7 @@ def page(work: Work) -> Page:
     curves = [row for row in rows if "curve" in row]
     head = ("bodies", "number", "fraction asked", "reached", "way", "smallest gap over the least", "same by seed", "s")
     text = ABOUT + table(head, map(_told, swarms))
-    head = ("fraction", "balls counted", "g at contact", "± by seeds", "Carnahan–Starling", "difference")
+    head = ("fraction", "balls counted", "g at contact", "± by seeds", "1 + 5φ/2", "Carnahan–Starling", "difference")
     text += NEIGHBOURS.format(seeds=SEEDS) + table(head, map(_contact_row, curves)) + "\n"
     return Page("Seeded swarms", text, {"": _figure(curves)})
 
@@ -96,9 +96,9 @@ def _bounding_radius(shape: Table) -> float:
 
 
 def _at_contact(row: dict[str, Any]) -> FloatArray:
-    """Values at contact (seeds,), a line through those of the first four shells."""
-    middle = 0.5 * (EDGES[1:] + EDGES[:-1])[:4] / (2.0 * RADIUS) - 1.0
-    return np.asarray(np.polynomial.polynomial.polyfit(middle, np.array(row["g"])[:, :4].T, 1)[0])
+    """Values at contact (seeds,), of a parabola through those of the first eight shells."""
+    middle = 0.5 * (EDGES[1:] + EDGES[:-1])[:8] / (2.0 * RADIUS) - 1.0
+    return np.asarray(np.polynomial.polynomial.polyfit(middle, np.array(row["g"])[:, :8].T, 2)[0])
 
 
 def _told(row: dict[str, Any]) -> Iterator[str]:
@@ -110,7 +110,7 @@ def _contact_row(row: dict[str, Any]) -> Iterator[str]:
     value, exact = _at_contact(row), carnahan_starling(row["curve"])
     yield from (f"{row['curve']:g}", str(row["balls"]), f"{value.mean():.3f}")
     yield f"{value.std(ddof=1) / np.sqrt(len(value)):.3f}"
-    yield from (f"{exact:.3f}", f"{100.0 * (value.mean() / exact - 1.0):+.1f} %")
+    yield from (f"{1.0 + 2.5 * row['curve']:.3f}", f"{exact:.3f}", f"{100.0 * (value.mean() / exact - 1.0):+.1f} %")
 
 
 def _figure(curves: list[dict[str, Any]]) -> Figure:
@@ -135,18 +135,19 @@ def _draw(axes: Any, scene: Scene) -> None:
     axes.set(xlim=(0, 1), ylim=(0, 1), aspect="equal", xticks=[], yticks=[], title="disks and ellipses, φ = 0.7")
 
 
-ABOUT = """Bodies are seeded by [`[[swarm]]`](../howto/seed-bodies.md) in a box of side 1, with gaps of at least .01 of the
-bounding radius. The smallest gap of balls is that of the formula |x - x'| - r - r', and at the faces; of other shapes it
-is that of the exact detector, which tests compare with the naive one. Seconds are CPU time of one core to load the scene.
+ABOUT = """Bodies are seeded by [`[[swarm]]`](../howto/seed-bodies.md) in a box of side 1, with gaps of at least .01 of
+the bounding radius. The smallest gap of balls is that of the formula |x - x'| - r - r', and at the faces; of other
+shapes it is that of the exact detector, which tests compare with the naive one. Seconds are CPU time of one core to load
+the scene.
 
 """
 NEIGHBOURS = """
 
-Balls that are inserted one by one are not a fluid in equilibrium, but near it where they are thin: their distributions
-of neighbours differ in the second order of the density (B. Widom, J. Chem. Phys. 44 (1966) 3888,
-doi:10.1063/1.1726548). The distribution g(r) counts neighbours of balls that are farther from the walls than the largest
-r, with {seeds} seeds; g at contact is that of a line through the first four shells, each .05 of the diameter wide. Hard
-spheres in equilibrium have (1 - φ/2)/(1 - φ)³ at contact (N. F. Carnahan and K. E. Starling, J. Chem. Phys. 51 (1969)
+Balls that are inserted one by one are not a fluid in equilibrium: their distributions of neighbours agree in the first
+order of the density and differ in the second (B. Widom, J. Chem. Phys. 44 (1966) 3888, doi:10.1063/1.1726548). The
+distribution g(r) counts neighbours of balls that are farther from the walls than the largest r, with {seeds} seeds; g at
+contact is that of a parabola through the first eight shells, each .05 of the diameter wide. To first order it is 1 +
+5φ/2; hard spheres in equilibrium have (1 - φ/2)/(1 - φ)³ (N. F. Carnahan and K. E. Starling, J. Chem. Phys. 51 (1969)
 635, doi:10.1063/1.1672048).
 
 """
