@@ -137,17 +137,17 @@ def _draw(axes: Any, scene: Scene) -> None:
 
 ABOUT = """Bodies are seeded by [`[[swarm]]`](../howto/seed-bodies.md) in a box of side 1, with gaps of at least .01 of
 the bounding radius. The smallest gap of balls is that of the formula |x - x'| - r - r', and at the faces; of other
-shapes it is that of the exact detector, which tests compare with the naive one. Seconds are CPU time of one core to load
-the scene.
+shapes it is that of the exact detector, which tests compare with the naive one. Seconds are CPU time of one core to
+load the scene.
 
 """
 NEIGHBOURS = """
 
 Balls that are inserted one by one are not a fluid in equilibrium: their distributions of neighbours agree in the first
 order of the density and differ in the second (B. Widom, J. Chem. Phys. 44 (1966) 3888, doi:10.1063/1.1726548). The
-distribution g(r) counts neighbours of balls that are farther from the walls than the largest r, with {seeds} seeds; g at
-contact is that of a parabola through the first eight shells, each .05 of the diameter wide. To first order it is 1 +
-5φ/2; hard spheres in equilibrium have (1 - φ/2)/(1 - φ)³ (N. F. Carnahan and K. E. Starling, J. Chem. Phys. 51 (1969)
+distribution g(r) counts neighbours of balls that are farther from the walls than the largest r, with {seeds} seeds; g
+at contact is that of a parabola through the first eight shells, each .05 of the diameter wide. To first order it is
+1 + 5φ/2; hard spheres in equilibrium have (1 - φ/2)/(1 - φ)³ (N. F. Carnahan and K. E. Starling, J. Chem. Phys. 51 (1969)
 635, doi:10.1063/1.1672048).
 
 """
