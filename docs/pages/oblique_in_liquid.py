@@ -29,7 +29,7 @@ class Surface:
 
 
 SURFACES = {"smooth": Surface(24e-7, 0.02), "rough": Surface(272e-7, 0.11)}
-ANGLES = {"smooth": (0.7, 3.0), "rough": (0.3, 0.7, 3.0)}
+ANGLES = {"smooth": (0.1, 0.7, 3.0), "rough": (0.3, 0.7, 3.0)}
 """By surface: speed along the wall over that towards it, at the start."""
 
 
