@@ -147,7 +147,7 @@ Balls that are inserted one by one are not a fluid in equilibrium: their distrib
 order of the density and differ in the second (B. Widom, J. Chem. Phys. 44 (1966) 3888, doi:10.1063/1.1726548). The
 distribution g(r) counts neighbours of balls that are farther from the walls than the largest r, with {seeds} seeds; g
 at contact is that of a parabola through the first eight shells, each .05 of the diameter wide. To first order it is
-1 + 5φ/2; hard spheres in equilibrium have (1 - φ/2)/(1 - φ)³ (N. F. Carnahan and K. E. Starling, J. Chem. Phys. 51 (1969)
-635, doi:10.1063/1.1672048).
+1 + 5φ/2; hard spheres in equilibrium have (1 - φ/2)/(1 - φ)³ (N. F. Carnahan and K. E. Starling, J. Chem. Phys. 51
+(1969) 635, doi:10.1063/1.1672048).
 
 """
