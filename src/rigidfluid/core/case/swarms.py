@@ -56,7 +56,7 @@ def _owners(before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[str
     for number, (old, new) in enumerate(zip(before["swarm"], after["swarm"], strict=True)):
         if "seeded" not in old:
             names = [body["name"] for body in islice(bodies, new["seeded"]["number"])]
-            yield from (f"swarm.{number}, body {name!r}" for name in names)
+            yield from (f"swarm.{number}.body {name!r}" for name in names)
 
 
 def _renamed(subject: str, owners: Sequence[str]) -> str:

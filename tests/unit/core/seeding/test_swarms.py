@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from facet_shapes import CUBE, TRIANGLES, text_stl
+from jsonschema import Draft7Validator
 from swarms import (
     BALL,
     DISK,
@@ -22,9 +23,11 @@ from swarms import (
     swarm_tables,
 )
 
-from rigidfluid import Scene, scene_from_dict
+from rigidfluid import Scene, load_results, scene_from_dict
 from rigidfluid.checks import check
+from rigidfluid.core.case.schema import json_schema
 from rigidfluid.core.run.run import simulate
+from rigidfluid.post.insertion import insert
 
 
 def record(scene: Scene) -> Any:
@@ -177,3 +180,31 @@ def test_radii_of_a_swarm_follow_its_sizes() -> None:
     found = radii(seeded(2, DISK, number=40, size=size))
     assert (found.min() >= 0.025) & (found.max() <= 0.05)
     assert np.ptp(found) > 0.02
+
+
+def test_a_run_is_resumed_from_a_scene_that_is_seeded_again(tmp_path: Path) -> None:
+    tables = swarm_tables(2, DISK, fraction=0.3, velocity_deviation=0.1)
+    tables |= {"contact": {"law": "barrier", "range": 0.01, "epsilon": 1e-4}, "output": {"every": 0.05}}
+    whole = simulate(scene_from_dict(tables | {"time": {"end": 0.1, "step": 0.01}}), tmp_path / "whole")
+    again = simulate(scene_from_dict(tables | {"time": {"end": 0.1, "step": 0.01}}), tmp_path / "whole", resume=True)
+    np.testing.assert_array_equal(whole.bodies["x"], again.bodies["x"])
+    found = load_results(tmp_path / "whole").scene
+    assert found is not None
+    assert found.swarm[0].seeded == record(scene_from_dict(tables))
+
+
+def test_a_swarm_is_inserted_into_a_mesh_with_its_picture(tmp_path: Path) -> None:
+    wet = {"fluid": {"density": 1.0, "viscosity": 0.1}, "mesh": {"size": 0.3, "size_body": 0.1}}
+    _, files = insert(seeded(2, DISK | {"radius": 0.1}, number=4, gap=0.05, tables=wet), tmp_path / "mesh")
+    assert (tmp_path / "mesh" / "mesh.png") in files
+
+
+def test_swarms_fit_the_schema() -> None:
+    region = {"type": "box", "lower": [0.0, 0.0], "upper": [1.0, 1.0]}
+    size = {"distribution": "uniform", "least": 0.5, "greatest": 1.0}
+    tables = swarm_tables(2, DISK, ELLIPSE | {"weight": 2.0}, number=3, region=region, size=size)
+    schema = Draft7Validator(json_schema())
+    assert list(schema.iter_errors(tables)) == []
+    assert list(schema.iter_errors(scene_from_dict(tables).to_dict())) == []
+    tables["swarm"][0]["shape"][0]["raduis"] = 0.1
+    assert len(list(schema.iter_errors(tables))) > 0

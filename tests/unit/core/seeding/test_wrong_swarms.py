@@ -93,7 +93,7 @@ def test_a_cylinder_in_space_needs_its_other_end() -> None:
 
 def test_a_name_that_a_listed_body_has_is_told_with_the_swarm() -> None:
     listed = DISK | {"name": "grain0", "density": 1.0, "position": [0.1, 0.1]}
-    with pytest.raises(SceneError, match=r"swarm\.0, body 'grain0'\.name: found 'grain0'; allowed is a name that no"):
+    with pytest.raises(SceneError, match=r"swarm\.0\.body 'grain0'\.name: found 'grain0'; allowed is a name that no"):
         scene_from_dict(swarm_tables(2, DISK, number=2, tables={"body": [listed]}))
 
 
