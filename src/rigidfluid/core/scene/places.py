@@ -49,11 +49,11 @@ def told_where_set(path: Path, keys: Mapping[str, Sequence[str]]) -> Iterator[No
 
 def line_of(field: str, lines: Sequence[str]) -> int | None:
     """Number of the line in which a field stands (``body.0.density``), or else the nearest table around it; from 1,
-    None where the text has neither.
+    None where the text has neither. A field may tell more after a comma (``swarm.0.file, line 3``).
 
     It is the first line down to which the text has the field already: the text above is read as TOML.
     """
-    keys = field.split(".")
+    keys = _key(field).split(".")
     for count in range(len(keys), 0, -1):
         if _has(lines, keys[:count]):
             return bisect_left(range(len(lines)), True, key=lambda last: _has(lines[: last + 1], keys[:count])) + 1
@@ -81,7 +81,12 @@ def _tell_place(error: RigidfluidError, path: Path, lines: Sequence[str], assign
 
 def _is_within(subject: str, key: str) -> bool:
     """Tell whether a subject is a key or lies under it."""
-    return f"{subject}.".startswith(f"{key}.")
+    return f"{_key(subject)}.".startswith(f"{key}.")
+
+
+def _key(subject: str) -> str:
+    """The key of a subject, without the place in a file or the body that it names after a comma."""
+    return subject.partition(",")[0]
 
 
 def _has(lines: Sequence[str], keys: Sequence[str]) -> bool:

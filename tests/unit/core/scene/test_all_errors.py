@@ -138,6 +138,8 @@ def test_errors_that_a_check_finds_later_have_their_line(tmp_path: Path) -> None
         ("body.1.position.2", 24 + 3),
         ("body.1", 20),
         ("body.1.spring.rest", 20),
+        ("body.1, body 'a.b'.name", 20),
+        ("mesh.size, line 3, column 'x'", 36),
         ("mesh.size", 36),
         ("body 'disk'", None),
         ("--set", None),
