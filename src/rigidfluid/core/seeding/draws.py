@@ -55,17 +55,33 @@ class Draws:
         return rotate(orientation, deviation * self.normal(count, spins))
 
 
+def share_between_ends(table: NormalSizes | LogNormalSizes) -> float:
+    """Share of a distribution of sizes that its ends leave [1]."""
+    from scipy.special import ndtr
+
+    low, high = ndtr((_ends(table) - _centre(table)) / table.deviation)
+    return float(high - low)
+
+
 def _quantile(part: FloatArray, table: SizeTable) -> FloatArray:
     """Factors below which each ``part`` of all lies."""
     if isinstance(table, TableSizes):
         return np.array([size for size, _ in table.rows])[_chosen(part, [share for _, share in table.rows])]
     if isinstance(table, UniformSizes):
         return table.least + part * (table.greatest - table.least)
-    if isinstance(table, LogNormalSizes):
-        ends = np.log([table.least, table.greatest])
-        return np.asarray(np.exp(_cut_normal(part, float(np.log(table.median)), table.deviation, ends)))
-    assert isinstance(table, NormalSizes)
-    return _cut_normal(part, table.mean, table.deviation, np.array([table.least, table.greatest]))
+    drawn = _cut_normal(part, _centre(table), table.deviation, _ends(table))
+    return np.exp(drawn) if isinstance(table, LogNormalSizes) else drawn
+
+
+def _centre(table: NormalSizes | LogNormalSizes) -> float:
+    """Mean of the normal distribution, of logarithms in a log-normal one."""
+    return float(np.log(table.median)) if isinstance(table, LogNormalSizes) else table.mean
+
+
+def _ends(table: NormalSizes | LogNormalSizes) -> FloatArray:
+    """Both ends of the normal distribution, (2,)."""
+    ends = np.array([table.least, table.greatest])
+    return np.log(ends) if isinstance(table, LogNormalSizes) else ends
 
 
 def _cut_normal(part: FloatArray, mean: float, deviation: float, ends: FloatArray) -> FloatArray:

@@ -12,15 +12,18 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.nested.placing import check_orientation
-from rigidfluid.core.scene.swarm_tables import SeededTable, SwarmTable, TableSizes
+from rigidfluid.core.scene.swarm_tables import SeededTable, SizeTable, SwarmTable, TableSizes, UniformSizes
 from rigidfluid.core.seeding.clearance import Surroundings
-from rigidfluid.core.seeding.draws import Draws
+from rigidfluid.core.seeding.draws import Draws, share_between_ends
 from rigidfluid.core.seeding.listed_bodies import Row, columns, listed_bodies
 from rigidfluid.core.seeding.placement import Others, Placement, nearest, refuse_outside
 from rigidfluid.core.seeding.regions import DomainRegion, region_of
 from rigidfluid.core.seeding.swarm import Swarm, swarm_of, with_fraction, with_rows
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import Registry
+
+LEAST_SHARE = 1e-6
+"""Least share of a distribution of sizes between its ends: of a smaller one numbers know little."""
 
 
 @dataclass(frozen=True)
@@ -94,12 +97,22 @@ def _check_table(table: SwarmTable, at: str, dimension: int) -> None:
         key = "angle" if dimension == 2 else "orientation"
         remedy = f"Give {key}, or leave tilt out: then all orientations are equally likely."
         raise SceneError(f"{at}.tilt", f"{table.tilt:g} from no {key}", f"tilt from an {key}", remedy)
-    size = table.size
-    if size is not None and not isinstance(size, TableSizes) and not size.least <= size.greatest:
+    if table.size is not None:
+        _check_sizes(table.size, f"{at}.size")
+
+
+def _check_sizes(size: SizeTable, at: str) -> None:
+    if isinstance(size, TableSizes):
+        if not any(share for _, share in size.rows):
+            raise SceneError(f"{at}.rows", "shares of 0", "a share above 0 in a row", "Correct them.")
+        return
+    if not size.least <= size.greatest:
         allowed = f"at least size.least = {size.least:g}"
-        raise SceneError(f"{at}.size.greatest", size.greatest, allowed, "Swap or correct them.")
-    if isinstance(size, TableSizes) and not any(share for _, share in size.rows):
-        raise SceneError(f"{at}.size.rows", "shares of 0", "a share above 0 in a row", "Correct them.")
+        raise SceneError(f"{at}.greatest", size.greatest, allowed, "Swap or correct them.")
+    if not isinstance(size, UniformSizes) and size.least < size.greatest and share_between_ends(size) < LEAST_SHARE:
+        found = f"{size.least:g}, up to size.greatest = {size.greatest:g}, with less than {LEAST_SHARE:g} of all sizes"
+        remedy = "Correct them, or the middle or `deviation` of the distribution."
+        raise SceneError(f"{at}.least", found, "ends with sizes between them", remedy)
 
 
 def _orientations(swarm: Swarm, draws: Draws) -> tuple[FloatArray, bool]:

@@ -35,6 +35,14 @@ SLAB = {"type": "box", "lower": [0.0, 0.0], "upper": [1.0, 0.1]}
             {"number": 3, "size": {"distribution": "table", "rows": [[1.0, 0.0]]}},
             "swarm.0.size.rows: found shares",
         ),
+        (
+            {"number": 3, "size": {"distribution": "normal", "deviation": 0.01, "least": 1.2, "greatest": 1.3}},
+            "swarm.0.size.least: found 1.2, up to size.greatest = 1.3, with less than 1e-06 of all sizes",
+        ),
+        (
+            {"number": 3, "size": {"distribution": "log-normal", "deviation": 0.01, "least": 0.1, "greatest": 0.8}},
+            "swarm.0.size.least: found 0.1",
+        ),
         ({"number": 3, "tilt": 0.1}, "swarm.0.tilt: found 0.1 from no angle"),
         ({"number": 3, "orientation": [1.0, 0.0, 0.0, 0.0]}, "swarm.0.orientation: found [1.0, 0.0, 0.0, 0.0]"),
         ({"number": 3, "gap": 0.5}, "swarm.0.gap: found 0.5 on both sides of a body 0.1 thick; allowed is together at"),
