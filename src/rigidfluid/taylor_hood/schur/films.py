@@ -6,6 +6,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.elements.surfaces import Surfaces
 from rigidfluid.taylor_hood.linear_solver.factorization import factorise
 from rigidfluid.taylor_hood.system.parts import Parts
 
@@ -15,10 +16,13 @@ FLAT = 0.15
 RINGS = 9
 """Rings of edges around flat cells that are solved with them: there the film is thin too."""
 
+_NOWHERE = -1
+"""Number of the surface of vertices that are on none."""
+
 
 class Films:
-    """Solution of the coupled equations in films, all else held: of pressures in and near flat cells, and of the
-    velocities around them.
+    """Solution of the coupled equations in films, all else held: of pressures in and near flat cells between two
+    surfaces, and of the velocities around them.
 
     In a film of thickness h the Schur complement of a pressure that varies over a length L along it is (h/L)²/12 of the
     pressures' mass matrix, so that `CahouetChabard` alone needs the more iterations the thinner it is.
@@ -32,7 +36,8 @@ class Films:
     def __init__(self, parts: Parts) -> None:
         constraint = parts.constraint
         numbering = constraint.surfaces.numbering
-        vertices = vertices_of_films(numbering.cells, parts.points[: numbering.vertices])
+        points, surface = parts.points[: numbering.vertices], _surface_numbers(constraint.surfaces)
+        vertices = vertices_of_films(numbering.cells, points, surface)
         self._which = _unknowns_of(parts, _with_rings(numbering, vertices))
         self._rows = constraint.transposed[self._which] @ parts.system_matrix @ constraint.matrix
         self._factors = factorise(self._rows[:, self._which].tocsr()) if len(self._which) else None
@@ -43,12 +48,32 @@ class Films:
             found[self._which] += self._factors.solve(right_side[self._which] - self._rows @ found)
 
 
-def vertices_of_films(cells: IntArray, points: FloatArray) -> IntArray:
-    """Vertices (v,) of all cells that are less high than FLAT times their longest edge, ascending."""
+def vertices_of_films(cells: IntArray, points: FloatArray, surface: IntArray) -> IntArray:
+    """Vertices (v,) of all cells that are less high than FLAT times their longest edge and at most an edge from two
+    surfaces, ascending; each vertex is on the ``surface`` (vertices,) of that number, -1 for none.
+
+    Cells that are stretched as bodies move are flat too, anywhere, and make no film.
+    """
     corners = points[cells]
     longest = np.linalg.norm(corners[:, :, None] - corners[:, None], axis=-1).max(axis=(1, 2))
     heights = 1.0 / np.linalg.norm(_slopes(corners), axis=-1).max(axis=1)
-    return np.unique(cells[heights < FLAT * longest])
+    flat = cells[heights < FLAT * longest]
+    around = cells[np.isin(cells, flat).any(axis=1)] if len(flat) else flat
+    last = surface.copy()
+    first = np.where(surface == _NOWHERE, surface.max() + 1, surface)
+    for nearest, extreme in ((first, np.minimum), (last, np.maximum)):
+        extreme.at(nearest, around, extreme.reduce(nearest[around], axis=1, keepdims=True))
+    return np.unique(flat[first[flat].min(axis=1) < last[flat].max(axis=1)])
+
+
+def _surface_numbers(surfaces: Surfaces) -> IntArray:
+    """Number of the surface that each vertex is on (vertices,), 0 of all faces together, of bodies from 1 on."""
+    number = np.full(surfaces.numbering.nodes, _NOWHERE)
+    for face in surfaces.faces:
+        number[face.nodes] = 0
+    for body, nodes in enumerate(surfaces.body_nodes, start=1):
+        number[nodes] = body
+    return number[: surfaces.numbering.vertices]
 
 
 def _slopes(corners: FloatArray) -> FloatArray:
