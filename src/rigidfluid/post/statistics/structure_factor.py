@@ -14,6 +14,9 @@ from rigidfluid.post.statistics.samples import Samples
 WAVES = 12
 """Most waves along a side of the domain."""
 
+_AT_ONCE = 256
+"""Bodies whose waves are summed at once: in 3D 17 MB."""
+
 
 class StructureFactor(NamedTuple):
     """S (w,) at ``wavenumber`` (w,) [1/length]."""
@@ -42,4 +45,7 @@ def structure_factor(samples: Samples) -> StructureFactor:
 
 def _power(waves: FloatArray, position: FloatArray) -> FloatArray:
     """|Σ exp(i k·x)|²/n of each wave (w,)."""
-    return np.asarray(np.abs(np.exp(1j * (waves @ position.T)).sum(axis=1)) ** 2 / len(position))
+    total = np.zeros(len(waves), dtype=complex)
+    for first in range(0, len(position), _AT_ONCE):
+        total += np.exp(1j * (waves @ position[first : first + _AT_ONCE].T)).sum(axis=1)
+    return np.asarray(np.abs(total) ** 2 / len(position))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -65,6 +66,15 @@ def test_a_lattice_scatters_waves_of_its_spacing_alone() -> None:
     waves = structure_factor(made(np.repeat(grid, 2, axis=0)))
     strong = waves.wavenumber[waves.value.value > 1.0]
     np.testing.assert_allclose(strong / (2.0 * np.pi), [5.0, 7.0, 10.0, 11.0], atol=0.1)
+
+
+def test_waves_of_thousands_of_bodies_take_little_memory() -> None:
+    position = np.random.default_rng(1).random((2, 3000, 3))
+    tracemalloc.start()
+    structure_factor(made(position))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 1e8
 
 
 def test_errors_of_correlated_values_are_those_of_what_is_independent() -> None:
