@@ -54,8 +54,8 @@ def wanted_size(points: FloatArray, fluid_domain: FluidDomain, sizes: Sizes) -> 
     h_open is `size_away_from_gaps`, d₁ the distance to the nearest body, d₂ that to the next body or the nearest wall,
     so that g equals the gap on the segment that joins two surfaces and is larger off it. Two walls make no gap. h_min
     is `Sizes.smallest`, or ALONG_FILM √(R g) down to FINER_IN_FILMS of that, with R the least radius of curvature of a
-    body: cells may be flat in a film, but the pressure along it is to be resolved. That is so from RESOLVED
-    refinements on.
+    body: cells may be flat in a film, but the pressure along it is to be resolved. With fewer
+    refinements than RESOLVED h_min is `Sizes.smallest`.
     """
     first, second = fluid_domain.two_nearest_bodies(points, reach_of_bodies(sizes))
     return size_between(points, first, second, fluid_domain, sizes)
