@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy import sparse
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.taylor_hood.elements.numbering import Numbering
@@ -12,6 +13,9 @@ from rigidfluid.taylor_hood.system.parts import Parts
 
 FLAT = 0.15
 """Least height of a cell over its longest edge, below which it is in a film."""
+
+ACROSS = 4.0
+"""Farthest that both surfaces of a film are from a flat cell in it, over the height of that."""
 
 RINGS = 9
 """Rings of edges around flat cells that are solved with them: there the film is thin too."""
@@ -49,21 +53,33 @@ class Films:
 
 
 def vertices_of_films(cells: IntArray, points: FloatArray, surface: IntArray) -> IntArray:
-    """Vertices (v,) of all cells that are less high than FLAT times their longest edge and at most an edge from two
-    surfaces, ascending; each vertex is on the ``surface`` (vertices,) of that number, -1 for none.
+    """Vertices (v,) of all cells that are less high than FLAT times their longest edge and between two surfaces at most
+    ACROSS heights away, ascending; each vertex is on the ``surface`` (vertices,) of that number, -1 for none.
 
     Cells that are stretched as bodies move are flat too, anywhere, and make no film.
     """
     corners = points[cells]
     longest = np.linalg.norm(corners[:, :, None] - corners[:, None], axis=-1).max(axis=(1, 2))
-    heights = 1.0 / np.linalg.norm(_slopes(corners), axis=-1).max(axis=1)
-    flat = cells[heights < FLAT * longest]
-    around = cells[np.isin(cells, flat).any(axis=1)] if len(flat) else flat
-    last = surface.copy()
-    first = np.where(surface == _NOWHERE, surface.max() + 1, surface)
-    for nearest, extreme in ((first, np.minimum), (last, np.maximum)):
-        extreme.at(nearest, around, extreme.reduce(nearest[around], axis=1, keepdims=True))
-    return np.unique(flat[first[flat].min(axis=1) < last[flat].max(axis=1)])
+    slopes = _slopes(corners)
+    steepest = np.argmax(np.linalg.norm(slopes, axis=-1), axis=1)
+    up = slopes[np.arange(len(cells)), steepest]
+    flat = np.linalg.norm(up, axis=1) * FLAT * longest > 1.0
+    chosen, cell, vertex = cells[flat], *_surface_vertices_around(cells, np.flatnonzero(flat), surface)
+    heights = np.abs(np.sum((points[vertex] - corners[flat].mean(axis=1)[cell]) * up[flat][cell], axis=1))
+    cell, vertex = cell[heights < ACROSS], vertex[heights < ACROSS]
+    least, most = np.full(len(chosen), len(points)), np.full(len(chosen), _NOWHERE)
+    np.minimum.at(least, cell, surface[vertex])
+    np.maximum.at(most, cell, surface[vertex])
+    return np.unique(chosen[least < most])
+
+
+def _surface_vertices_around(cells: IntArray, flat: IntArray, surface: IntArray) -> tuple[IntArray, IntArray]:
+    """Pairs of a ``flat`` cell, by its place among these, and a vertex on a surface of a cell around it."""
+    own = sparse.csr_matrix(
+        (np.ones(cells.size), cells.ravel(), np.arange(len(cells) + 1) * cells.shape[1]), (len(cells), len(surface))
+    )
+    around = (own[flat] @ own.T @ own[:, surface != _NOWHERE]).tocoo()
+    return around.row.astype(np.int64), np.flatnonzero(surface != _NOWHERE)[around.col]
 
 
 def _surface_numbers(surfaces: Surfaces) -> IntArray:

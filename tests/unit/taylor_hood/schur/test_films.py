@@ -30,7 +30,8 @@ def test_only_flat_cells_make_a_film() -> None:
         ([-1, -1, -1, -1, -1], False),
         ([0, 0, -1, -1, -1], False),
         ([-1, -1, -1, 3, 3], False),
-        ([0, 0, -1, -1, 3], True),
+        ([0, 0, -1, -1, 3], False),  # ten heights away
+        ([0, 0, -1, 3, -1], True),
         ([-1, -1, 4, 3, -1], True),
     ],
 )
