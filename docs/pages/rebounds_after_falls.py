@@ -411,8 +411,8 @@ The sphere leaves the floor as fast as measured, but then slows down less: 10.4 
 high, and not {measured_at}, and it turns {higher} higher and {later} later than measured. No law acts there. What the
 liquid does after an impact is what its flow was before: a sphere that was thrown 5 D above the floor has a shorter
 wake to meet than one that fell from far above. Thrown from twice as high, {far} R, it arrives at {far_speed} cm/s,
-leaves with e = {far_bounce} by a parabola, and turns at {far_height} D ({far_off} off the measured) {far_rise} s after the
-impact.
+leaves with e = {far_bounce} by a parabola, and turns at {far_height} D ({far_off} off the measured) {far_rise} s
+after the impact.
 
 The roughness of 2 µm was chosen at St 27, where it gives the measured height, and is no measured one. Here the film
 takes a smaller part, and so the choice matters less: by `e₀ (St - T) - T` 1 or 4 µm in place of 2 change e at St 152
