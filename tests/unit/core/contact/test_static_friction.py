@@ -103,7 +103,7 @@ def test_a_shorter_plan_resolves_stiff_springs():
 def test_two_such_laws_in_one_contact_are_refused():
     data = block_on_slope(0.9, end=0.1).to_dict()
     data["interaction"] = [STICKING | {"names": ["bottom"]}]
-    with pytest.raises(SceneError, match=r"interaction\.0\.law.*contact has one"):
+    with pytest.raises(SceneError, match=r"interaction\.0\.friction.*contact has one"):
         build_system(scene_from_dict(data))
 
 

@@ -63,7 +63,7 @@ def test_a_flow_that_is_driven_past_a_free_body_keeps_its_balance() -> None:
 def attracted() -> History:
     """A disk at rest that a floor attracts, until shortly before it is there."""
     disk = DISK | {"radius": 0.1, "position": [0.5, 0.16]}
-    law = {"law": "normal", "range": 0.1, "epsilon": 1e-3, "substeps": 1}
+    law = {"law": "normal", "range": 0.1, "epsilon": 1e-3, "substeps": 32}
     return rigidfluid.run(rigidfluid.scene_from_dict(dry_tables(disk, end=0.02, contact=law)))
 
 
