@@ -206,5 +206,5 @@ def test_swarms_fit_the_schema() -> None:
     schema = Draft7Validator(json_schema())
     assert list(schema.iter_errors(tables)) == []
     assert list(schema.iter_errors(scene_from_dict(tables).to_dict())) == []
-    tables["swarm"][0]["shape"][0]["raduis"] = 0.1
+    tables["swarm"][0]["shape"] = [DISK | {"raduis": 0.1}]
     assert len(list(schema.iter_errors(tables))) > 0
