@@ -29,10 +29,8 @@ def scene_laws(contact: ContactTable, interactions: Sequence[InteractionTable], 
     """All laws of contact of a scene, that of `[contact]` first; raises PluginError for one that is missing, SceneError
     for an option that is not allowed."""
     found = []
-    for field, table, between, names in _law_tables(contact, interactions):
-        assert table.law is not None
+    for (field, table, between, names), part in _named_laws(contact, interactions, registry):
         assert table.range is not None
-        part = registry.get(FORCE_LAW, table.law, f"{field}.law")
         if issubclass(part, PoseLaw):
             continue
         others = registry.installed(DETECTOR) if isinstance(table, ContactTable) else []
@@ -62,10 +60,8 @@ def scene_pair_forces(
     """All long-range forces of a scene; raises as `scene_laws` does, also for a table without two names, and for keys
     of laws of contact."""
     found = []
-    for field, table, _, names in _law_tables(contact, interactions):
-        assert table.law is not None
+    for (field, table, _, names), part in _named_laws(contact, interactions, registry):
         assert table.range is not None
-        part = registry.get(FORCE_LAW, table.law, f"{field}.law")
         if issubclass(part, PoseLaw):
             _refuse_keys_of_contact(table, part, field)
             if len(names) != 2:
@@ -84,6 +80,15 @@ def _refuse_keys_of_contact(table: ContactTable | InteractionTable, part: type[P
             raise SceneError(f"{field}.{key}", getattr(table, key), allowed, "Remove it, or choose another law.")
     if isinstance(table, InteractionTable) and table.between == "walls":
         raise SceneError(f"{field}.between", "walls", f"pairs, where {part.name!r} acts", "Leave it out.")
+
+
+def _named_laws(
+    contact: ContactTable, interactions: Sequence[InteractionTable], registry: Registry
+) -> Iterator[tuple[_LawTable, type[ForceLaw]]]:
+    """Tables that name a law, each with its class; raises PluginError for one that is missing."""
+    for entry in _law_tables(contact, interactions):
+        assert entry.table.law is not None
+        yield entry, registry.get(FORCE_LAW, entry.table.law, f"{entry.field}.law")
 
 
 def _law_tables(contact: ContactTable, interactions: Sequence[InteractionTable]) -> Iterator[_LawTable]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rigidfluid.core.case.auto_size import auto_size_body
 from rigidfluid.core.case.boundary_table_checks import check_surface_names
@@ -13,7 +13,6 @@ from rigidfluid.core.case.mechanisms import placed_mechanisms
 from rigidfluid.core.case.part_tables import check_part_tables
 from rigidfluid.core.case.remaining import remaining_tables
 from rigidfluid.core.case.scene_model import model_of, scene_body, scene_domain
-from rigidfluid.core.case.swarms import has_seeds, told_by_swarms, with_seeded_bodies
 from rigidfluid.core.case.time_factor import read_time_tables
 from rigidfluid.core.geometry.value_types import describe
 from rigidfluid.core.model.memory import told_memory
@@ -26,13 +25,14 @@ from rigidfluid.core.scene.places import told_in_file
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.scene.toml_file import read_toml
 from rigidfluid.core.scene.validation import read_table
-from rigidfluid.core.seeding.placement import Others
-from rigidfluid.core.seeding.seed import Occupied
 from rigidfluid.core.setup.made_bodies import check_made_bodies, told_by_numbers
 from rigidfluid.core.setup.placed_bodies import PlacedBodies
 from rigidfluid.errors import ArgumentError
 from rigidfluid.registry import FLUID_BACKEND, Registry, missing_packages
 from rigidfluid.regular_file import path_of
+
+if TYPE_CHECKING:
+    from rigidfluid.core.seeding.seed import Occupied
 
 
 def scene_from_dict(data: Mapping[str, Any]) -> Scene:
@@ -69,8 +69,10 @@ def scene_of_results(data: Mapping[str, Any]) -> Scene:
 
     It is read like `scene_from_dict` does, but its backend may lack packages here, and then cannot run it.
     """
-    if not has_seeds(data):
+    if not _has_seeds(data):
         return _sized(data)
+    from rigidfluid.core.case.swarms import told_by_swarms, with_seeded_bodies  # few scenes have swarms
+
     tables = tables_now(data)
     scene = _tables(_with_any_size(tables))
     seeded = with_seeded_bodies(tables, scene.swarm, scene.scene.seed, _occupied(scene, Registry.load()))
@@ -78,8 +80,17 @@ def scene_of_results(data: Mapping[str, Any]) -> Scene:
         return _sized(seeded)
 
 
+def _has_seeds(data: Mapping[str, Any]) -> bool:
+    """Tell whether tables have a swarm that is not seeded yet."""
+    swarms = data.get("swarm")
+    return isinstance(swarms, list) and any(isinstance(one, Mapping) and "seeded" not in one for one in swarms)
+
+
 def _occupied(scene: Scene, registry: Registry) -> Occupied:
     """The domain of a scene with the bodies that are there before all swarms; raises SceneError or PluginError."""
+    from rigidfluid.core.seeding.placement import Others
+    from rigidfluid.core.seeding.seed import Occupied
+
     with all_told() as ask:
         domain = ask(scene_domain, scene.domain, registry, scene.dimension)
         mechanisms = ask(placed_mechanisms, scene.mechanism, registry, scene.dimension)

@@ -14,12 +14,6 @@ from rigidfluid.core.seeding.seed import Occupied, seed
 from rigidfluid.errors import PluginError, SceneError
 
 
-def has_seeds(data: Mapping[str, Any]) -> bool:
-    """Tell whether tables have a swarm that is not seeded yet."""
-    swarms = data.get("swarm")
-    return isinstance(swarms, list) and any(isinstance(one, Mapping) and "seeded" not in one for one in swarms)
-
-
 def with_seeded_bodies(
     data: Mapping[str, Any], swarms: Sequence[SwarmTable], seed_of_all: int, occupied: Occupied
 ) -> dict[str, Any]:

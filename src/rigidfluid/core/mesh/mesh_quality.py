@@ -36,6 +36,12 @@ def cell_sizes(points: FloatArray, cells: IntArray) -> FloatArray:
     return size
 
 
+def edge_lengths(points: FloatArray, cells: IntArray) -> FloatArray:
+    """Length of every edge of every simplex, (M, d(d+1)/2) [length]."""
+    first, second = np.triu_indices(cells.shape[1], 1)
+    return np.asarray(np.linalg.norm(points[cells[:, second]] - points[cells[:, first]], axis=-1))
+
+
 def _corners(points: FloatArray, cells: IntArray) -> FloatArray:
     """Coordinates by corner and component, (d+1, d, M), each a contiguous row."""
     return np.ascontiguousarray(points.T)[:, cells.T].swapaxes(0, 1)

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 from pydantic import Field
 
 from rigidfluid.core.joints.pair_spring import PairSpring
+from rigidfluid.core.mechanics.shapes import inscribed_radius
 from rigidfluid.core.model.pose_law import PoseLaw
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.scene.spelling import suggestion
@@ -85,8 +85,8 @@ def check_pair_forces(model: Model) -> None:
 
 def _depth(shape: Body, force: PairForce) -> float:
     """Distance of a body's surface from its centre of mass, which no other body passes [length]."""
-    depth = -float(shape.signed_distance(np.zeros((1, shape.dimension)))[0])
-    if not depth > 0.0:
+    depth = inscribed_radius(shape)
+    if depth == 0.0:
         found = "a body whose centre of mass is outside of it"
         remedy = "Choose another body: others may come as near to that point as they will."
         raise SceneError(f"{force.field}.names", found, "bodies around their centres of mass", remedy)

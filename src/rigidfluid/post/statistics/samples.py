@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.model.system import System
+from rigidfluid.core.mechanics.shapes import equal_volume_radius
 from rigidfluid.errors import OutputError
 from rigidfluid.post.reports.results import Results
 
@@ -86,13 +86,12 @@ def samples_of(results: Results, since: float | None, until: float | None) -> Sa
     inside = int(np.sum((results.time >= since) & (results.time <= until)))
     wanted = np.linspace(since, min(until, end), max(LEAST, min(SAMPLES, inside)))
     rows = np.unique([results.state_at(time) for time in wanted])
-    moving = _moving(results.system)
+    moving = np.flatnonzero(~results.system.prescribed)
     if len(rows) < LEAST or len(moving) < LEAST:
         found = f"{len(rows)} states and {len(moving)} bodies that move"
         remedy = "Choose a longer time, or a run of more bodies."
         raise OutputError("statistics", found, f"at least {LEAST} of each", remedy)
     system = results.system
-    volume = np.array([system.bodies[body].volume for body in moving])
     lower, upper = system.domain.extent
     return Samples(
         step=results.bodies["step"][rows, 0],
@@ -100,14 +99,9 @@ def samples_of(results: Results, since: float | None, until: float | None) -> Sa
         position=results.quantity("position")[rows][:, moving],
         velocity=results.quantity("velocity")[rows][:, moving],
         gap=results.bodies["gap"][rows][:, moving],
-        radius=np.sqrt(volume / np.pi) if results.system.dimension == 2 else np.cbrt(0.75 * volume / np.pi),
+        radius=np.array([equal_volume_radius(system.bodies[body]) for body in moving]),
         name=tuple(results.names[body] for body in moving),
         lower=np.asarray(lower),
         upper=np.asarray(upper),
         volume=float(system.domain.volume),
     )
-
-
-def _moving(system: System) -> list[int]:
-    """Numbers of the bodies that may go where forces push them."""
-    return [body for body in range(len(system.bodies)) if not system.prescribed[body]]

@@ -6,6 +6,7 @@ import numpy as np
 from scipy import sparse
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.taylor_hood.elements.linear_functions import gradients
 from rigidfluid.taylor_hood.linear_solver.factorization import Factors, factorise
 from rigidfluid.taylor_hood.linear_solver.pardiso import Orderings
 from rigidfluid.taylor_hood.system.constraint import Constraint
@@ -84,8 +85,7 @@ def _integrals(
     corners = points[cells]
     jacobian = np.moveaxis(corners[:, 1:] - corners[:, :1], 1, 2)
     volume = np.abs(np.linalg.det(jacobian)) / (2.0 if d == 2 else 6.0)
-    slopes = np.linalg.inv(jacobian)
-    gradient = np.concatenate([-slopes.sum(axis=1, keepdims=True), slopes], axis=1)
+    gradient = gradients(corners)
     laplacian = volume[:, None, None] * (gradient @ np.moveaxis(gradient, 1, 2))
     share = np.divide(volume, resisted, out=np.zeros_like(volume), where=resisted > 0.0)
     mass = share[:, None, None] * (np.ones((d + 1, d + 1)) + np.eye(d + 1)) / ((d + 1) * (d + 2))

@@ -6,6 +6,8 @@ import numpy as np
 from scipy import sparse
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.mesh.mesh_quality import edge_lengths
+from rigidfluid.taylor_hood.elements.linear_functions import gradients
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.elements.surfaces import Surfaces
 from rigidfluid.taylor_hood.linear_solver.factorization import factorise
@@ -59,8 +61,8 @@ def vertices_of_films(cells: IntArray, points: FloatArray, surface: IntArray) ->
     Cells that are stretched as bodies move are flat too, anywhere, and make no film.
     """
     corners = points[cells]
-    longest = np.linalg.norm(corners[:, :, None] - corners[:, None], axis=-1).max(axis=(1, 2))
-    slopes = _slopes(corners)
+    longest = edge_lengths(points, cells).max(axis=1)
+    slopes = gradients(corners)
     steepest = np.argmax(np.linalg.norm(slopes, axis=-1), axis=1)
     up = slopes[np.arange(len(cells)), steepest]
     flat = np.linalg.norm(up, axis=1) * FLAT * longest > 1.0
@@ -90,12 +92,6 @@ def _surface_numbers(surfaces: Surfaces) -> IntArray:
     for body, nodes in enumerate(surfaces.body_nodes, start=1):
         number[nodes] = body
     return number[: surfaces.numbering.vertices]
-
-
-def _slopes(corners: FloatArray) -> FloatArray:
-    """Gradients (M, d+1, d) of the linear functions of cells; each has the length of 1 over a height."""
-    slopes = np.linalg.inv(np.moveaxis(corners[:, 1:] - corners[:, :1], 1, 2))
-    return np.concatenate([-slopes.sum(axis=1, keepdims=True), slopes], axis=1)
 
 
 def _with_rings(numbering: Numbering, vertices: IntArray) -> IntArray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from itertools import combinations, product
+from itertools import product
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from rigidfluid.core.mesh.generation.fill import fill_mesh
 from rigidfluid.core.mesh.generation.inserter import BY_SHAPE, Inserter
 from rigidfluid.core.mesh.generation.meshing import generate_mesh, put_back
 from rigidfluid.core.mesh.generation.refine_surface import LONGEST, long_edges, on_kept_surfaces, refine_surface
-from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
+from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes, edge_lengths
 from rigidfluid.core.mesh.size.size_field import Sizes, wanted_size
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, check_volume, distinct_edges, orient
 from rigidfluid.core.model.types import Mesh
@@ -160,9 +160,7 @@ def rounded(mesh: Mesh) -> Mesh:
 
     MMG amplifies round-off to another mesh: two runs that agree to round-off shall get the same one.
     """
-    pairs = np.array(list(combinations(range(mesh.cells.shape[1]), 2)))
-    edges = np.diff(mesh.points[mesh.cells[:, pairs]], axis=2)
-    shortest = float(np.linalg.norm(edges, axis=-1).min())
+    shortest = float(edge_lengths(mesh.points, mesh.cells).min())
     unit = 2.0 ** (np.floor(np.log2(shortest)) - 20)
     return replace(mesh, points=np.round(mesh.points / unit) * unit)
 
@@ -176,9 +174,8 @@ def _lowest_outside_films(mesh: Mesh, fluid_domain: FluidDomain) -> float:
     """Quality of the worst cell that is not as flat as the film it is in [1]."""
     quality = cell_quality(mesh.points, mesh.cells)
     bad = np.flatnonzero(quality <= GOOD_QUALITY)
-    corners = mesh.points[mesh.cells[bad]]
-    width = fluid_domain.gap_widths(corners.mean(axis=1))
-    longest = np.linalg.norm(corners[:, :, None] - corners[:, None], axis=-1).max(axis=(1, 2))
+    width = fluid_domain.gap_widths(mesh.points[mesh.cells[bad]].mean(axis=1))
+    longest = edge_lengths(mesh.points, mesh.cells[bad]).max(axis=1)
     quality[bad[width <= FLAT_IN_FILM * longest]] = 1.0
     return float(quality.min())
 
