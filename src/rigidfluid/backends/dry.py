@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
-from rigidfluid.core.model.fluid_backend import FluidBackend
+from rigidfluid.core.model.fluid_backend import Filling, FluidBackend
 from rigidfluid.core.model.types import Advance, Fields, FluidState, Mesh, Pose, Response, Step, Twist, Wrench
 
 
@@ -16,6 +16,7 @@ class Dry(FluidBackend):
 
     name: ClassVar[str] = "dry"
     wet: ClassVar[bool] = False
+    exchanges_bodies: ClassVar[bool] = True
 
     def initial(self, mesh: Mesh, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
         """An empty state without energy."""
@@ -44,6 +45,12 @@ class Dry(FluidBackend):
 
     def transfer(self, fluid: FluidState, old: Mesh, new: Mesh) -> tuple[FluidState, float]:
         """An empty state, and no energy lost."""
+        return {}, 0.0
+
+    def with_bodies(
+        self, fluid: FluidState, old: Mesh, new: Mesh, pose: Pose, twist: Twist, filling: Filling
+    ) -> tuple[FluidState, float]:
+        """An empty state without energy."""
         return {}, 0.0
 
     def fields(self, fluid: FluidState, mesh: Mesh) -> Fields:

@@ -12,7 +12,7 @@ from pydantic import Field
 
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
-from rigidfluid.core.model.fluid_backend import FluidBackend
+from rigidfluid.core.model.fluid_backend import Filling, FluidBackend
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Advance, Fields, FluidState, Mesh, Pose, Response, Step, Twist
 from rigidfluid.taylor_hood.elements.numbering import Numbering
@@ -133,6 +133,20 @@ class TaylorHoodBackend(FluidBackend):
         moved = transfer(Flow(fluid, old, numbering, (before, earlier)), target, self.options.tolerance, new)
         self.drop_factors()
         return moved, before - kinetic_energy(target, new.geometry, moved["velocity"])
+
+    @final
+    def with_bodies(
+        self, fluid: FluidState, old: Mesh, new: Mesh, pose: Pose, twist: Twist, filling: Filling
+    ) -> tuple[FluidState, float]:
+        from rigidfluid.taylor_hood.elements.state import resting_state
+        from rigidfluid.taylor_hood.stepping.transfer import among_other_bodies
+        from rigidfluid.taylor_hood.system.discretisation import kinetic_energy
+
+        target = self._projecting_discretisation(new)
+        rest = resting_state(target.surfaces, new, pose, twist)
+        state = among_other_bodies(fluid, old, filling, target, self.options.tolerance, rest)
+        self.drop_factors()
+        return state, kinetic_energy(target, new.geometry, state["velocity"])
 
     @final
     def prediction_error(self, before: FluidState, after: FluidState, mesh: Mesh, extrapolation: FloatArray) -> float:

@@ -53,7 +53,7 @@ class Ledger:
     """Sums since the start [energy], and what is stored now.
 
     Stored: ``kinetic`` (fluid and bodies), ``contact`` (and springs). In: ``gravity``, ``boundary``, ``control``,
-    ``body_force`` (on the fluid). Out:
+    ``body_force`` (on the fluid), ``exchange`` (with bodies that entered, less what left with others). Out:
     ``dissipation``, ``grad_div_loss`` (by stabilisation), ``contact_loss`` (by dampers of contacts and joints),
     ``transfer_loss`` (by re-meshing).
     ``path_friction`` is no part of the balance: of what it leaves unaccounted for, friction in impacts shorter than a
@@ -73,6 +73,7 @@ class Ledger:
     boundary: float = 0.0
     control: float = 0.0
     body_force: float = 0.0
+    exchange: float = 0.0
     dissipation: float = 0.0
     grad_div_loss: float = 0.0
     contact_loss: float = 0.0
@@ -95,8 +96,9 @@ class Ledger:
 
     @property
     def works(self) -> tuple[float, ...]:
-        """Energies supplied since the start: by gravity, faces, what drives bodies, and the force on the fluid."""
-        return self.gravity, self.boundary, self.control, self.body_force
+        """Energies supplied since the start: by gravity, faces, what drives bodies, the force on the fluid, and bodies
+        that entered."""
+        return self.gravity, self.boundary, self.control, self.body_force, self.exchange
 
     @property
     def residual(self) -> float:
@@ -161,6 +163,11 @@ class Ledger:
         smooth = _common(grown, step * before.smooth_rate) if cause is Cause.REMESHING else 0.0
         part: Any = {cause.value: getattr(self, cause.value) + grown - smooth}
         return replace(self, in_impact=cause is Cause.CONTACTS, **part)
+
+    def after_exchange(self, kinetic: float, contact: float) -> Ledger:
+        """The ledger after bodies entered or left, by what is stored then."""
+        gained = kinetic + contact - self.kinetic - self.contact
+        return replace(self, kinetic=kinetic, contact=contact, exchange=self.exchange + gained)
 
     def after_transfer(self, loss: float) -> Ledger:
         """The ledger after a transfer that lost this much kinetic energy."""

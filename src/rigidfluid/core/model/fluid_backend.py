@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import ClassVar
 
 from scipy.sparse import csc_array
@@ -18,6 +18,10 @@ from rigidfluid.core.model.extension import Extension, FactorisedExtension
 from rigidfluid.core.model.part import Part, PartOptions
 from rigidfluid.core.model.ranks import ALONE, Ranks
 from rigidfluid.core.model.types import Advance, Fields, FluidState, Mesh, Pose, Response, SolverCost, Step, Twist
+
+Filling = Callable[[FloatArray], tuple[BoolArray, FloatArray]]
+"""Whether bodies have left each of some points (N, d), (N,), and the velocity (N, d) that they had there
+[length/time]."""
 
 
 class FluidBackend(Part):
@@ -50,6 +54,8 @@ class FluidBackend(Part):
     state_format: ClassVar[str | None] = None
     """Name of the format of its state. Backends of one format resume each other's runs, and by `joined` and `cut` those
     of other numbers of ranks; None where neither can be."""
+    exchanges_bodies: ClassVar[bool] = False
+    """Tell whether bodies may enter and leave its fluid, by `with_bodies`."""
     ranks: Ranks = ALONE
     """The processes that share the run."""
 
@@ -98,6 +104,18 @@ class FluidBackend(Part):
     @gives(backends.state_and_energy)
     def transfer(self, fluid: FluidState, old: Mesh, new: Mesh) -> tuple[FluidState, float]:
         """The state on another mesh of the same domain at the same time, and the kinetic energy lost [energy]."""
+
+    @gives(backends.state_and_energy)
+    def with_bodies(
+        self, fluid: FluidState, old: Mesh, new: Mesh, pose: Pose, twist: Twist, filling: Filling
+    ) -> tuple[FluidState, float]:
+        """The flow of another backend of this class around other bodies, on a mesh around those of this one; and its
+        kinetic energy [energy].
+
+        The bodies have this ``pose`` and ``twist``; ``filling(points)`` gives the velocity where others have left.
+        Of all flows with the twists at the bodies it is the nearest to the one before. The earlier state is forgotten.
+        """
+        raise NotImplementedError
 
     @gives(number(shorter=True))
     def prediction_error(self, before: FluidState, after: FluidState, mesh: Mesh, extrapolation: FloatArray) -> float:

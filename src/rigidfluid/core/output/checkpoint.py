@@ -28,21 +28,22 @@ from rigidfluid.core.output.stored_records import Misfit, load, load_value, stor
 from rigidfluid.core.output.tables import Prefix
 from rigidfluid.errors import OutputError
 
-FORMAT = 13
+FORMAT = 14
 """Number of the checkpoint's format, raised with each change of the records, the backend's memory or the tables'
 columns; files of other formats are refused."""
 
 
 @dataclass(frozen=True, slots=True)
 class Checkpoint:
-    """Data with which a rank goes on with a run: its ``state`` and the backend's ``memory``, the ``scene`` as JSON, the
-    digests of the ``files`` that it names, the ``times`` of its outputs, the ``sizes`` (times, 3) of the files that the
-    rank then wrote, 0 for none [byte], the ``tables`` as far as they were written, what the run has cost, its
-    ``extremes``, and how many ``ranks`` have such."""
+    """Data with which a rank goes on with a run: its ``state`` and the backend's ``memory``, the ``scene`` as JSON, so
+    the ``population``, who has entered and left, the digests of the ``files`` that it names, the ``times`` of its
+    outputs, the ``sizes`` (times, 3) of the files that the rank then wrote, 0 for none [byte], the ``tables`` as
+    far as they were written, what the run has cost, its ``extremes``, and how many ``ranks`` have such."""
 
     state: State
     memory: FluidState
     scene: str
+    population: str
     files: str
     times: tuple[float, ...]
     sizes: IntArray

@@ -98,7 +98,7 @@ def require_sound(checkpoint: Any) -> None:
         _require_range(name, value)
     _require_indices(checkpoint.state)
     _require_times(checkpoint)
-    for name in ("scene", "files"):
+    for name in ("scene", "files", "population"):
         json_table(name, getattr(checkpoint, name))
 
 

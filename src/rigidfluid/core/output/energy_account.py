@@ -164,7 +164,7 @@ def _refuse_gaps(energy: Table) -> None:
 
 
 def _put_in(energy: Table) -> float:
-    driven = energy["boundary"] + energy["control"] + energy["body_force"]
+    driven = energy["boundary"] + energy["control"] + energy["body_force"] + energy["exchange"]
     start = energy["kinetic"][0] + energy["contact"][0]
     return float(start + max(energy["gravity"].max(), 0.0) + max(driven.max(), 0.0))
 

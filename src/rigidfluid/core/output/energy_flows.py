@@ -22,7 +22,8 @@ _SHORTEST = 10.0
 step: it dissipates at once what is there, and remembers no error."""
 
 _DISSIPATED = ("dissipation", "grad_div_loss", "contact_loss")
-_BALANCE = ("kinetic", "contact", "gravity", "boundary", "control", "body_force", *_DISSIPATED, "transfer_loss")
+_WORKS = ("gravity", "boundary", "control", "body_force", "exchange")
+_BALANCE = ("kinetic", "contact", *_WORKS, *_DISSIPATED, "transfer_loss")
 COLUMNS = (*_BALANCE, "path_friction", "residual")
 """All other columns."""
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.model.types import Twist
 
 
@@ -21,6 +21,12 @@ class Extremes:
     def none(cls, bodies: int) -> Extremes:
         """Extremes of no state at all."""
         return cls(np.inf, np.zeros(bodies))
+
+    def among(self, kept: IntArray, bodies: int) -> Extremes:
+        """Extremes among so many ``bodies``, the first of which are in the ``kept`` rows here."""
+        speed = np.zeros(bodies)
+        speed[: len(kept)] = self.highest_speed[kept]
+        return Extremes(self.smallest_gap, speed)
 
     def after(self, gaps: FloatArray, twist: Twist) -> Extremes:
         """Extremes with one more state in them, with each body's nearest gap (n,) [length]."""

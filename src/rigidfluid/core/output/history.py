@@ -173,7 +173,8 @@ class History(Described):
     @property
     def energy(self) -> dict[str, NDArray[Any]]:
         """The table of energy.csv: a row per accepted step."""
-        return self.table("energy")
+        energy = self.table("energy")
+        return {"exchange": np.zeros(len(energy["time"])), **energy}  # earlier versions wrote no such column
 
     @property
     def steps(self) -> dict[str, NDArray[Any]]:

@@ -20,7 +20,7 @@ Records = dict[str, list[Row]]
 """Rows by table name."""
 
 LEDGER_COLUMNS = (
-    *("kinetic", "contact", "gravity", "boundary", "control", "body_force"),
+    *("kinetic", "contact", "gravity", "boundary", "control", "body_force", "exchange"),
     *("dissipation", "grad_div_loss", "contact_loss", "transfer_loss", "path_friction", "residual"),
     *("residual_start", "residual_remeshing", "residual_contacts", "residual_mesh", "residual_steps"),
 )

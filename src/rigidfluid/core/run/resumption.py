@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.writer import checkpoint_name, earlier_parts, earlier_run, ranks_of_run
 from rigidfluid.core.run.checkpoint_fit import require_fit, require_fluid
 from rigidfluid.core.run.clock import Clock
+from rigidfluid.core.run.population import Population, Present, assemble_present
 from rigidfluid.core.scene.earlier import tables_now
 from rigidfluid.core.scene.fluid_table import FluidTable
 from rigidfluid.core.setup.model import Model
@@ -26,7 +27,15 @@ from rigidfluid.errors import OutputError, PluginError
 from rigidfluid.registry import FLUID_BACKEND, Registry
 
 
-def earlier_of(model: Model, out: Path | None, system: System, clock: Clock, files: Mapping[str, str]) -> Checkpoint:
+class Earlier(NamedTuple):
+    """A run to go on with: its ``checkpoint``, and the ``model`` and ``system`` of its bodies then."""
+
+    checkpoint: Checkpoint
+    model: Model
+    system: System
+
+
+def earlier_of(model: Model, out: Path | None, system: System, clock: Clock, files: Mapping[str, str]) -> Earlier:
     """Read the checkpoint to resume; its scene must be this one, but for names of units, the end of time and a backend
     of one format.
 
@@ -55,13 +64,18 @@ def earlier_of(model: Model, out: Path | None, system: System, clock: Clock, fil
         )
     _refuse_changed_files(checkpoint, files)
     path = out / checkpoint_name(backend.ranks.rank)
+    population = Population.from_json(checkpoint.population)
+    if population:
+        state = checkpoint.state
+        model = population.model(model, Present(population.names(model), state.pose, state.twist))
+        system = assemble_present(model)
     with backend.ranks.raise_on_all():
         require_fit(path, checkpoint, system, clock)
         require_fluid(path, checkpoint.state, backend)
     if checkpoint.state.tick > clock.last_tick:
         found = f"an end at {clock.end:g}, before the checkpoint's time {clock.time(checkpoint.state.tick):g}"
         raise OutputError(str(out), found, "a later one", "Move time.end; the tables hold what was before it.")
-    return checkpoint
+    return Earlier(checkpoint, model, system)
 
 
 def recall_memory(out: Path, earlier: Checkpoint, backend: FluidBackend) -> None:

@@ -8,6 +8,7 @@ from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FluidState
 from rigidfluid.core.output.extremes import Extremes
+from rigidfluid.core.run.population import Population
 from rigidfluid.core.run.stepper import Counts
 from rigidfluid.core.setup.model import Model
 from rigidfluid.errors import SceneError
@@ -18,6 +19,7 @@ class SavedRun:
     """A run of a ``model`` as `Simulation.save` kept it."""
 
     model: Model
+    population: Population
     state: State
     memory: FluidState
     system: System

@@ -38,9 +38,19 @@ from rigidfluid.core.run.caller_input import (
 )
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.control import body_row, following, present_motion, with_applied
+from rigidfluid.core.run.exchange import Exchange, exchanged
 from rigidfluid.core.run.initial_state import initial_state
 from rigidfluid.core.run.mesh_keys import updater_of
 from rigidfluid.core.run.observers import Observer, Observers
+from rigidfluid.core.run.population import (
+    Population,
+    Present,
+    assemble_present,
+    named_table,
+    refuse_known_name,
+    refuse_unknown_name,
+    require_changeable,
+)
 from rigidfluid.core.run.process import one_openblas_thread
 from rigidfluid.core.run.resumption import earlier_of, recall_memory
 from rigidfluid.core.run.run_timer import RunTimer
@@ -51,8 +61,9 @@ from rigidfluid.core.run.stopwatch import Stopwatch
 from rigidfluid.core.run.summary import summarise
 from rigidfluid.core.run.velocity_jump import halvings_after, halvings_within, shortened
 from rigidfluid.core.setup.assemble import assemble
+from rigidfluid.core.setup.model import Model
 from rigidfluid.core.setup.named_files import file_digests
-from rigidfluid.core.setup.prescribed import PrescribedMotion
+from rigidfluid.core.setup.prescribed import PrescribedMotion, prescribed_motion
 from rigidfluid.described import Described, first_names
 from rigidfluid.errors import ArgumentError, OutputError, StepError
 
@@ -91,7 +102,11 @@ class Simulation(Described):
         require_processes(processes, system.backend)
         self.clock = Clock.for_steps(model.time.step, model.time.shortest, model.time.end)
         self._files = {} if out is None else file_digests(model.document)
-        earlier = earlier_of(model, out, system, self.clock, self._files) if resume else None
+        self._origin, self._population = model, Population()
+        earlier = None
+        if resume:
+            earlier, self.model, system = earlier_of(model, out, system, self.clock, self._files)
+            self._population = Population.from_json(earlier.population)
         self.watch = Stopwatch()
         self.mesh_updater = updater_of(model.fluid, system, self.clock, self.watch)
         self.stepper = Stepper(system, self.clock, self.mesh_updater, self.watch, model.time.tolerance)
@@ -275,10 +290,53 @@ class Simulation(Described):
         row, wrench = body_row(self.system, name, False), wrench_row(self.model.dimension, force, torque)
         self.state = with_applied(self.state, row, wrench)
 
+    def add(self, body: Mapping[str, object]) -> None:
+        """Let a body enter, from now on: in a fluid, in the place of what was there.
+
+        The mesh is made anew around all bodies, the flow is the nearest to the one before that goes with the body, and
+        steps are as short as after a start. Energy that comes with the body is in the column ``exchange`` of the
+        energies.
+
+        Parameters
+        ----------
+        body : mapping
+            Keys of a ``[[body]]`` table, with a name that none of the run has had.
+
+        Raises
+        ------
+        SceneError
+            If the table is wrong, the body overlaps another one or a wall, or there are joints, mechanisms, springs to
+            the ground, a window, or a backend whose bodies cannot change.
+        MeshError
+            If no mesh can be made around it.
+        """
+        table = named_table(body)
+        refuse_known_name(self._population, self.model, table["name"])
+        self._exchange(self._population.with_body(table))
+
+    def remove(self, name: str) -> None:
+        """Let a body leave, from now on: in a fluid, which takes its place with its velocity.
+
+        Parameters
+        ----------
+        name : str
+            Of the body.
+
+        Raises
+        ------
+        SceneError
+            If there is no such body, it is the last one, or bodies cannot change, as for `add`.
+        MeshError
+            If no mesh can be made without it.
+        """
+        refuse_unknown_name(self.model, name)
+        self._exchange(self._population.without(name))
+
     def save(self) -> SavedRun:
         """Keep the run as it is now, in memory; what follows equals what follows `restore` to the last bit."""
         return SavedRun(
             model=self.model,
+            population=self._population,
             state=self.state,
             memory=self.system.backend.memory(),
             system=self.system,
@@ -301,7 +359,7 @@ class Simulation(Described):
             )
         self.system.backend.recall(saved.memory, saved.state.mesh)
         self.state, self.extremes = saved.state, saved.extremes
-        self.stepper.system = saved.system
+        self._follow(saved.model, saved.system, saved.population)
         self.stepper.counts = replace(saved.counts)
         self.history.cut(saved.rows)
         self._observers.go_back(saved.reached)
@@ -321,6 +379,37 @@ class Simulation(Described):
         """Let other runs write to the folder; a simulation that writes takes no step after that."""
         if self._writer is not None:
             self._writer.close()
+
+    def _exchange(self, population: Population) -> None:
+        """Go on with other bodies; nothing is changed where they do not fit."""
+        require_changeable(self.model)
+        before, state = self.system, self.state
+        names = tuple(body.name for body in self.model.bodies)
+        model = population.model(self._origin, Present(names, state.pose, state.twist))
+        with told_memory(), self._threads(), self.watch("mesh"):
+            system = assemble_present(model)
+            exchange = Exchange.between(before, system)
+            motion = PrescribedMotion(
+                exchange.prescription(
+                    present_motion(self.model, before, state).rows, prescribed_motion(model.bodies, system.pose).rows
+                )
+            )
+            system = following(system, motion)
+            exchange = replace(exchange, after=system)
+            self.mesh_updater.system = system
+            try:
+                after = exchanged(exchange, state, self.mesh_updater, self.clock, motion.rows)
+            except BaseException:
+                self.mesh_updater.system = before
+                raise
+        self._follow(model, system, population)
+        self.extremes = self.extremes.among(exchange.kept, len(system.bodies))
+        self.state = after
+
+    def _follow(self, model: Model, system: System, population: Population) -> None:
+        """Go on with a system, of the model's bodies."""
+        self.model, self._population = model, population
+        self.stepper.system = self.mesh_updater.system = system
 
     def _facts(self) -> Mapping[str, object]:
         gap = float(self.state.gaps.min())
@@ -407,6 +496,7 @@ class Simulation(Described):
             state=self.state,
             memory=memory,
             scene=json.dumps(self.model.document),
+            population=self._population.to_json(),
             files=json.dumps(self._files),
             times=self._times,
             sizes=writer.sizes,

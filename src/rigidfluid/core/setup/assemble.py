@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache, partial
 
 import numpy as np
@@ -21,7 +21,7 @@ from rigidfluid.core.model.interactions import acting_together
 from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.signed_law import SignedLaw
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import Twist
+from rigidfluid.core.model.types import Pose, Twist
 from rigidfluid.core.nested.placing import initial_pose, initial_twist
 from rigidfluid.core.setup.contact_laws import interactions_of
 from rigidfluid.core.setup.geometry_checks import check_geometry
@@ -38,8 +38,8 @@ from rigidfluid.core.setup.window import build_window, open_wake_end
 _MOST_PAIRS = 1000
 
 
-def assemble(model: Model) -> System:
-    """Make the system of a model, and check that its objects fit together.
+def assemble(model: Model, check: Callable[[Model, Pose], None] = check_geometry) -> System:
+    """Make the system of a model, and ``check`` that its objects fit together.
 
     Raises SceneError if a body overlaps another or a surface of the domain, or the mesh is
     too coarse for a gap.
@@ -47,7 +47,7 @@ def assemble(model: Model) -> System:
     masses = masses_of(model)
     motions, given = _motions(model, masses)
     pose = motions.poses(motions.pose, 0.0)
-    check_geometry(model, pose)
+    check(model, pose)
     window = build_window(model, pose)
     problem = model.fluid.problem(open_wake_end(model.conditions, window), motions, model.dimension)
     joints = build_joints(model, pose, motions, given, _least_resistance(model))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from copy import copy
-from dataclasses import field
+from dataclasses import field, replace
 from functools import cached_property
 from typing import Annotated, Any, ClassVar
 
@@ -21,6 +21,7 @@ from rigidfluid.core.model.mechanism import Mechanism
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.scene.boundary_tables import BoundaryTable
 from rigidfluid.core.scene.domain_table import WindowTable
+from rigidfluid.core.scene.mesh_tables import AUTO
 from rigidfluid.core.scene.run_tables import OutputTable, TimeTable
 from rigidfluid.core.scene.scene import Scene, UnitsTable
 from rigidfluid.core.scene.swarm_tables import SwarmTable
@@ -152,6 +153,16 @@ class Model(Arrangement, Described):
         for name, value in (("_scene", scene), ("_detector_why", detector_why)):
             object.__setattr__(told, name, value)
         return told
+
+    def with_bodies(self, bodies: tuple[RigidBody, ...]) -> Model:
+        """The same model with other bodies, told in results and checkpoints as this one; a detector that nobody named is
+        chosen for them."""
+        named = self._scene is None or self._scene.contact.detector != AUTO
+        changed = replace(self, bodies=bodies, detector=self.detector if named else None)
+        if self._scene is not None:
+            changed = changed.told_by(self._scene, self._detector_why)
+        changed.__dict__["document"] = self.document
+        return changed
 
     @cached_property
     def document(self) -> Mapping[str, Any]:

@@ -118,7 +118,7 @@ def energy_plot(results: Results) -> Figure:
     energy = results.energy
     contact = energy["contact"] - min(energy["contact"].min(), 0.0)  # attraction counts from its lowest
     initial = energy["kinetic"][0] + contact[0]
-    supplied = initial + sum(energy[name] for name in ("gravity", "boundary", "control", "body_force"))
+    supplied = initial + sum(energy[name] for name in ("gravity", "boundary", "control", "body_force", "exchange"))
     shares = {
         "dissipated": (energy["dissipation"], ORANGE),
         "taken by stabilisation": (energy["grad_div_loss"], SKY),

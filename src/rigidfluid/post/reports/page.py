@@ -20,6 +20,7 @@ _ENERGIES = {
     "boundary": "supplied through the faces",
     "control": "supplied by what drives prescribed bodies",
     "body_force": "supplied by the force on the fluid",
+    "exchange": "brought by bodies that entered, less what left with others",
     "dissipation": "dissipated by viscosity",
     "grad_div_loss": "taken by grad-div stabilisation, in cells too coarse for the flow",
     "contact_loss": "taken by dampers of contacts and joints",

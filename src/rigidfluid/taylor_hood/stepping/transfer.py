@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.fluid_backend import Filling
 from rigidfluid.core.model.types import FluidState, Mesh, Pose, Twist
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.elements.sampling import Samples
@@ -68,6 +69,23 @@ def transfer(flow: Flow, target: Discretisation, tolerance: float, new: Mesh) ->
             scale, rotational = _rotational_part(projection, projected, prescribed, wanted, tolerance, rotational)
         moved["velocity" + suffix] = projected + (scale - 1.0) * rotational
     return moved
+
+
+def among_other_bodies(
+    fluid: FluidState, old: Mesh, filling: Filling, target: Discretisation, tolerance: float, rest: FluidState
+) -> FluidState:
+    """Flow of a ``fluid`` on the mesh ``old`` that goes on among other bodies, which move as in the state of ``rest``
+    on the target's mesh; see `FluidBackend.with_bodies`."""
+    numbering, geometry, position = target.numbering, rest["points_previous"], rest["position"]
+    node_points, every = numbering.node_points(geometry), np.ones(len(position), dtype=bool)
+    samples = Samples(old, Numbering.from_mesh(old), node_points)
+    velocity, pressure = samples.quadratic(fluid["velocity"]), samples.linear(fluid["pressure"])[: numbering.vertices]
+    left, filled = filling(node_points)
+    velocity[left] = filled[left]
+    target.surfaces.move_with_bodies(velocity, node_points, position, rest["twist"], every)
+    velocity = project(target, tolerance, velocity, geometry, position)
+    flow = {"velocity": velocity, "velocity_previous": velocity, "pressure": pressure, "pressure_previous": pressure}
+    return {**rest, **flow}
 
 
 def initial(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twist: Twist) -> tuple[FluidState, float]:

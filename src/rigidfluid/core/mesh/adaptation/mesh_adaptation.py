@@ -75,7 +75,7 @@ class MeshUpdater:
         inserter: Inserter = BY_SHAPE,
         watch: Callable[[str], AbstractContextManager[None]] = lambda _: nullcontext(),
     ) -> None:
-        self._system = system
+        self.system = system
         self._sizes = sizes
         self._renewal = renewal
         self._fields = tuple(fields)
@@ -89,7 +89,7 @@ class MeshUpdater:
 
     def first_mesh(self) -> Mesh:
         """The mesh around the bodies' initial pose."""
-        s, ranks = self._system, self._system.backend.ranks
+        s, ranks = self.system, self.system.backend.ranks
         with ranks.raise_on_all():
             around = fluid_domain_at(s, s.pose)
             sizes = with_fields_at_rest(self._sizes, self._fields, around)
@@ -100,11 +100,11 @@ class MeshUpdater:
 
     def first_reference(self, mesh: Mesh, gaps: FloatArray) -> Reference:
         """The first mesh as a reference."""
-        return reference_of(mesh, self._system.pose, gaps, 0)
+        return reference_of(mesh, self.system.pose, gaps, 0)
 
     def deform(self, state: State, pose: Pose) -> Mesh:
         """The mesh when the bodies are at ``pose``; raises StepRejected where a cell is tangled."""
-        _refuse_to_leave(self._system, pose)
+        _refuse_to_leave(self.system, pose)
         self._refuse_to_cross(pose)
         geometry, worst = self._placed(state.reference, pose)
         if worst < TANGLED:
@@ -128,7 +128,7 @@ class MeshUpdater:
             # The present mesh serves until a cell tangles, and most often a later pose can be meshed.
             return replace(state, remesh_failed=FailedRemesh(state.tick, str(error)))
         with self._watch("transfer"):
-            fluid, loss = self._system.backend.transfer(state.fluid, state.mesh, mesh)
+            fluid, loss = self.system.backend.transfer(state.fluid, state.mesh, mesh)
         return replace(
             state,
             mesh=mesh,
@@ -152,7 +152,7 @@ class MeshUpdater:
         return self._placed(state.reference, state.pose)[1]
 
     def _remade(self, state: State, mesh: Mesh) -> Mesh:
-        s, ranks, present = self._system, mesh.ranks, whole(mesh)
+        s, ranks, present = self.system, mesh.ranks, whole(mesh)
         flow = flow_on(s.backend, state.fluid, mesh, state.twist) if self._fields else None
         with ranks.raise_on_all():
             made = Mesh.empty(s.dimension)
@@ -166,7 +166,7 @@ class MeshUpdater:
 
     def _curved(self, mesh: Mesh, fluid_domain: FluidDomain) -> Mesh:
         """Bend the mesh's edges to the order that is asked for, if the backend takes curved cells."""
-        if self._sizes.order == 1 or not self._system.backend.curved_cells:
+        if self._sizes.order == 1 or not self.system.backend.curved_cells:
             return mesh
         return with_curved_edges(mesh, fluid_domain)
 
@@ -190,13 +190,13 @@ class MeshUpdater:
         if not is_due(reference.pose, state.pose, pose, sizes):
             return False
         mesh = reference.mesh
-        now = relative_sizes(points, mesh.cells, fluid_domain_at(self._system, pose), sizes)
+        now = relative_sizes(points, mesh.cells, fluid_domain_at(self.system, pose), sizes)
         return has_coarsened(self._sizes_when_made(reference, sizes), now, mesh.ranks)
 
     def _sizes_when_made(self, reference: Reference, sizes: Sizes) -> FloatArray:
         """Relative sizes of the reference's cells, (M,), kept for the next look."""
         if self._made is None or self._made[0] is not reference:
-            mesh, around = reference.mesh, fluid_domain_at(self._system, reference.pose)
+            mesh, around = reference.mesh, fluid_domain_at(self.system, reference.pose)
             self._made = reference, relative_sizes(mesh.points, mesh.cells, around, sizes)
         return self._made[1]
 
@@ -212,7 +212,7 @@ class MeshUpdater:
     def _refuse_to_cross(self, pose: Pose) -> None:
         """Reject a step in which a body comes to a periodic surface: it would have to be in two places of the mesh, and
         facets there do not get smaller."""
-        s = self._system
+        s = self.system
         for number in chain(*s.domain.periodic):
             piece, margin = s.domain.pieces[number], self._sizes.size_body
             radius = s.bounding_radii
@@ -228,7 +228,7 @@ class MeshUpdater:
 
     def _map(self, reference: Reference) -> tuple[MeshMotion, CurvedCells]:
         if self._reference is not reference:
-            s = self._system
+            s = self.system
             around = FluidDomain(s.bodies, reference.pose, s.domain, s.walls)
             motion = MeshMotion(reference.mesh, around, s.backend.extension, s.window)
             self._motion, self._reference = (motion, CurvedCells(reference.mesh)), reference

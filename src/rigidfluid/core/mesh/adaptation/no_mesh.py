@@ -17,14 +17,14 @@ class NoMesh:
     needs_remesh = Replaceable()
 
     def __init__(self, system: System) -> None:
-        self._system = system
+        self.system = system
         self.needs_remesh = lambda state, pose: False
 
     def first_mesh(self) -> Mesh:
-        return Mesh.empty(self._system.dimension)
+        return Mesh.empty(self.system.dimension)
 
     def first_reference(self, mesh: Mesh, gaps: FloatArray) -> Reference:
-        return Reference(mesh, self._system.pose, gaps, math.nan, 0)
+        return Reference(mesh, self.system.pose, gaps, math.nan, 0)
 
     def deform(self, state: State, pose: Pose) -> Mesh:
         return state.mesh

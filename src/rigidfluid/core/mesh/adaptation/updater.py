@@ -7,12 +7,15 @@ from typing import Protocol
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.state import Reference, State
+from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Mesh, Pose
 
 
 class Updater(Protocol):
     """Keeper of a run's mesh: it moves the mesh with the bodies, and re-makes it when ``needs_remesh`` says so."""
 
+    system: System
+    """The present system; another one may be put in its place between steps."""
     needs_remesh: Callable[[State, Pose], bool]
 
     def first_mesh(self) -> Mesh:

@@ -1,0 +1,136 @@
+"""State of a run after bodies have entered or left it: rows of those that stay, and the flow around all of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rigidfluid.core.contact.pairs.proximity import detect_contacts_and_gaps
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.mechanics.frames import distance_to_body
+from rigidfluid.core.mechanics.rigid import cross
+from rigidfluid.core.mechanics.wrenches import nothing
+from rigidfluid.core.mesh.adaptation.updater import Updater
+from rigidfluid.core.model.fluid_backend import Filling
+from rigidfluid.core.model.state import MotionState, Prescription, State
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.tangential_springs import TangentialSprings, spring_energy
+from rigidfluid.core.model.types import Pose, Twist, Wrench
+from rigidfluid.core.run.clock import Clock
+from rigidfluid.core.run.initial_state import start_level
+from rigidfluid.core.run.step import bodies_energy, stored_energy
+
+
+@dataclass(frozen=True)
+class Exchange:
+    """Bodies of a system ``before`` and ``after`` a change: ``kept`` (m,) are the rows of those that stay, the first m
+    ones after it."""
+
+    before: System
+    after: System
+    kept: IntArray
+
+    @classmethod
+    def between(cls, before: System, after: System) -> Exchange:
+        """The exchange between two systems whose bodies go by their names."""
+        names, now = _names(before), set(_names(after))
+        return cls(before, after, np.array([row for row, name in enumerate(names) if name in now], dtype=np.int64))
+
+    def rows(self, old: FloatArray, new: FloatArray) -> FloatArray:
+        """``old`` (n, …) of those that stay, and ``new`` (n', …) of those that enter."""
+        return np.concatenate([old[self.kept], new[len(self.kept) :]])
+
+    def pose(self, old: Pose, new: Pose) -> Pose:
+        """Pose after the exchange."""
+        return Pose(self.rows(old.position, new.position), self.rows(old.orientation, new.orientation))
+
+    def twist(self, old: Twist, new: Twist) -> Twist:
+        """Twist after the exchange."""
+        velocity = self.rows(old.velocity, new.velocity)
+        return Twist(velocity, self.rows(old.angular_velocity, new.angular_velocity))
+
+    def wrench(self, old: Wrench) -> Wrench:
+        """Wrench after the exchange, zero on those that enter."""
+        new = nothing(self.after.pose)
+        return Wrench(self.rows(old.force, new.force), self.rows(old.torque, new.torque))
+
+    def prescription(self, old: Prescription, new: Prescription) -> Prescription:
+        """Prescribed motions after the exchange."""
+        names = ("twist", "before", "over", "amplitude", "frequency", "start")
+        rows = {name: self.rows(getattr(old, name), getattr(new, name)) for name in names}
+        return Prescription(**rows, pose=self.pose(old.pose, new.pose))
+
+    def springs(self, old: TangentialSprings) -> TangentialSprings:
+        """Springs between surfaces that stay."""
+        numbers = {name: number for number, name in enumerate(self.after.surfaces)}
+        now = np.array([numbers.get(name, -1) for name in self.before.surfaces], dtype=np.int64)
+        body_a, body_b = now[old.body_a], now[old.body_b]
+        stay = (body_a >= 0) & (body_b >= 0)
+        return replace(old.select(stay), body_a=body_a[stay], body_b=body_b[stay])
+
+    def filling(self, pose: Pose, twist: Twist) -> Filling:
+        """Rigid velocities where bodies have left, which were at ``pose`` with ``twist``."""
+        gone = np.setdiff1d(np.arange(len(self.before.bodies)), self.kept)
+
+        def velocities(points: FloatArray) -> tuple[BoolArray, FloatArray]:
+            left, velocity = np.zeros(len(points), dtype=bool), np.zeros_like(points)
+            for body in gone:
+                inside = distance_to_body(pose, body, self.before.bodies[body], points) <= 0.0
+                arm = points[inside] - pose.position[body]
+                velocity[inside] = twist.velocity[body] + cross(twist.angular_velocity[body], arm)
+                left |= inside
+            return left, velocity
+
+        return velocities
+
+
+def exchanged(exchange: Exchange, state: State, updater: Updater, clock: Clock, prescription: Prescription) -> State:
+    """The state among the bodies after an exchange, at the same time, on a new mesh; raises MeshError where there is
+    none."""
+    system = exchange.after
+    pose, twist = exchange.pose(state.pose, system.pose), exchange.twist(state.twist, system.twist)
+    mesh = updater.first_mesh()
+    filling = exchange.filling(state.pose, state.twist)
+    fluid, kinetic = system.backend.with_bodies(state.fluid, state.mesh, mesh, pose, twist, filling)
+    contacts, gaps = detect_contacts_and_gaps(system, pose, mesh)
+    springs = None if state.springs is None else exchange.springs(state.springs)
+    stored = stored_energy(system, contacts, pose, clock.time(state.tick)) + spring_energy(springs)
+    ledger = state.ledger.after_exchange(kinetic + bodies_energy(system, pose, twist), stored)
+    now = replace(
+        state,
+        pose=pose,
+        twist=twist,
+        past=None,
+        mesh=mesh,
+        reference=replace(updater.first_reference(mesh, gaps), pose=pose, tick=state.tick),
+        fluid=fluid,
+        contacts=contacts,
+        coupling=None,
+        gaps=gaps,
+        hydrodynamic_wrench=exchange.wrench(state.hydrodynamic_wrench),
+        contact_wrench=exchange.wrench(state.contact_wrench),
+        motions=MotionState(
+            pose, twist, exchange.wrench(state.motions.contact), exchange.wrench(state.motions.hydrodynamic)
+        ),
+        link=system.joints.unloaded(pose),
+        ledger=ledger,
+        remesh_failed=None,
+        estimate=None if state.estimate is None else state.estimate.restarted,
+        prescription=prescription,
+        applied=None if state.applied is None else exchange.wrench(state.applied),
+        springs=springs,
+    )
+    return _started(system, clock, now) if system.has_fluid else now
+
+
+def _started(system: System, clock: Clock, state: State) -> State:
+    """The state, from which the fluid starts as after an impact: with short steps, and stresses that nobody knows."""
+    ledger = replace(state.ledger, power=None)
+    if not system.quasi_steady:
+        ledger = replace(ledger, since_start=0.0)
+    return replace(state, level=start_level(clock), ledger=ledger)
+
+
+def _names(system: System) -> tuple[str, ...]:
+    return system.surfaces[: len(system.bodies)]

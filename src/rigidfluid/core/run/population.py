@@ -1,0 +1,154 @@
+"""Bodies of a run that enter and leave it: which there are, and the model that has those."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from rigidfluid.core.case.scene_model import scene_body
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.value_types import describe
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import Pose, Twist
+from rigidfluid.core.scene.body_tables import BodyTable
+from rigidfluid.core.scene.validation import read_table
+from rigidfluid.core.setup.assemble import assemble
+from rigidfluid.core.setup.geometry_checks import check_places
+from rigidfluid.core.setup.model import Model
+from rigidfluid.core.setup.rigid_body import RigidBody
+from rigidfluid.core.setup.shape_checks import check_shapes
+from rigidfluid.errors import SceneError
+
+
+@dataclass(frozen=True)
+class Present:
+    """Pose and twist of bodies by ``names``, now."""
+
+    names: tuple[str, ...]
+    pose: Pose
+    twist: Twist
+
+
+@dataclass(frozen=True)
+class Population:
+    """Changes of the bodies of a run: tables of those that ``entered``, and names of those that ``left``."""
+
+    entered: tuple[Mapping[str, Any], ...] = ()
+    left: tuple[str, ...] = ()
+
+    @classmethod
+    def from_json(cls, text: str) -> Population:
+        """Population as `to_json` wrote it."""
+        stored = json.loads(text)
+        return cls(tuple(stored["entered"]), tuple(stored["left"]))
+
+    def __bool__(self) -> bool:
+        return bool(self.entered or self.left)
+
+    def to_json(self) -> str:
+        """Text for a checkpoint."""
+        return json.dumps({"entered": self.entered, "left": self.left})
+
+    def with_body(self, table: Mapping[str, Any]) -> Population:
+        """One with a body more, last of all."""
+        return replace(self, entered=(*self.entered, table))
+
+    def without(self, name: str) -> Population:
+        """One in which the body of this name has left."""
+        return replace(self, left=(*self.left, name))
+
+    def names(self, origin: Model) -> tuple[str, ...]:
+        """Names of the bodies at present, in their order."""
+        known = (*(body.name for body in origin.bodies), *(str(table["name"]) for table in self.entered))
+        return tuple(name for name in known if name not in self.left)
+
+    def model(self, origin: Model, now: Present) -> Model:
+        """The model at present: bodies of ``origin`` and those that entered, without those that left, in their places
+        ``now``; raises SceneError or PluginError for a table that is wrong."""
+        entered = (_body(table, f"body {table.get('name')!r}", origin) for table in self.entered)
+        bodies = [body for body in (*origin.bodies, *entered) if body.name not in self.left]
+        places = {name: row for row, name in enumerate(now.names)}
+        return origin.with_bodies(
+            tuple(_moved(body, now, places[body.name]) if body.name in places else body for body in bodies)
+        )
+
+
+def assemble_present(model: Model) -> System:
+    """System of a model whose bodies are on their way, and may be nearer to each other than at a start; raises
+    SceneError where two overlap."""
+    return assemble(model, _check_places)
+
+
+def _check_places(model: Model, pose: Pose) -> None:
+    check_shapes(model.shapes)
+    check_places(model, pose)
+
+
+def require_changeable(model: Model) -> None:
+    """Raise SceneError for a model whose bodies cannot change: joints, mechanisms, springs and windows go by them."""
+    found = {
+        "mechanism": model.mechanisms,
+        "joint": model.joints,
+        "body.spring or body.free": [body for body in model.bodies if body.linked_to_ground],
+        "domain.window": model.window,
+    }
+    for key, value in found.items():
+        if value:
+            remedy = f"Leave {key} out, or keep the bodies."
+            raise SceneError(key, "together with bodies that enter or leave", "one of both", remedy)
+    backend = model.fluid.backend.part
+    if not backend.exchanges_bodies:
+        found_backend, allowed = f"{backend.name!r}", "a backend whose bodies may enter and leave"
+        raise SceneError("fluid.backend", found_backend, allowed, "Use backend = 'scikit-fem' or 'dry'.")
+
+
+def named_table(body: object) -> Mapping[str, Any]:
+    """A body's table as plain values, for a checkpoint; raises SceneError for what is no table with a name."""
+    if not isinstance(body, Mapping):
+        raise SceneError("body", describe(body), "a mapping of the keys of a [[body]] table", "Give a dict.")
+    table = read_table(BodyTable, body, "body")
+    if not table.name:
+        raise SceneError("body.name", "no name", "a name that no other body of the run has had", "Give one.")
+    return table.model_dump(mode="json", exclude_none=True)
+
+
+def refuse_unknown_name(model: Model, name: str) -> None:
+    """Raise SceneError where no body has this name, or no other one would be left."""
+    names = [body.name for body in model.bodies]
+    if name not in names:
+        raise SceneError("body", repr(name), f"a body: {', '.join(names)}", "Name another.")
+    if len(names) == 1:
+        raise SceneError("body", f"{name!r}, the last one", "another body besides", "Keep it, or end the run.")
+
+
+def refuse_known_name(population: Population, model: Model, name: str) -> None:
+    """Raise SceneError for the name of a body that enters if another one has or had it: results go by names."""
+    known = {*model.surfaces, *population.left}
+    if name in known:
+        raise SceneError(
+            "body.name", repr(name), "a name that no other body or surface of the run has had", "Change it."
+        )
+
+
+def _body(table: Mapping[str, Any], at: str, model: Model) -> RigidBody:
+    return scene_body(read_table(BodyTable, table, at), at, model.registry, model.dimension)
+
+
+def _moved(body: RigidBody, now: Present, row: int) -> RigidBody:
+    """The body where it is now, if it is free with its velocities."""
+    pose, twist = now.pose, now.twist
+    place: dict[str, Any] = {"position": _numbers(pose.position[row])}
+    if body.shape.dimension == 2:
+        place["angle"] = float(pose.orientation[row, 0])
+    else:
+        place["orientation"] = _numbers(pose.orientation[row])
+    if not body.is_prescribed:
+        place["velocity"] = _numbers(twist.velocity[row])
+        place["angular_velocity"] = _numbers(twist.angular_velocity[row])
+    return replace(body, **place)
+
+
+def _numbers(row: FloatArray) -> tuple[float, ...]:
+    return tuple(row.tolist())
