@@ -173,8 +173,7 @@ class History(Described):
     @property
     def energy(self) -> dict[str, NDArray[Any]]:
         """The table of energy.csv: a row per accepted step."""
-        energy = self.table("energy")
-        return {"exchange": np.zeros(len(energy["time"])), **energy}  # earlier versions wrote no such column
+        return self.table("energy")
 
     @property
     def steps(self) -> dict[str, NDArray[Any]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -39,17 +38,16 @@ class Population:
     left: tuple[str, ...] = ()
 
     @classmethod
-    def from_json(cls, text: str) -> Population:
-        """Population as `to_json` wrote it."""
-        stored = json.loads(text)
+    def from_dict(cls, stored: Mapping[str, Any]) -> Population:
+        """Population as `to_dict` gave it."""
         return cls(tuple(stored["entered"]), tuple(stored["left"]))
 
     def __bool__(self) -> bool:
         return bool(self.entered or self.left)
 
-    def to_json(self) -> str:
-        """Text for a checkpoint."""
-        return json.dumps({"entered": self.entered, "left": self.left})
+    def to_dict(self) -> dict[str, Any]:
+        """Values that JSON can hold, for checkpoints and summaries."""
+        return {"entered": list(self.entered), "left": list(self.left)}
 
     def with_body(self, table: Mapping[str, Any]) -> Population:
         """One with a body more, last of all."""

@@ -64,7 +64,7 @@ def earlier_of(model: Model, out: Path | None, system: System, clock: Clock, fil
         )
     _refuse_changed_files(checkpoint, files)
     path = out / checkpoint_name(backend.ranks.rank)
-    population = Population.from_json(checkpoint.population)
+    population = Population.from_dict(json.loads(checkpoint.population))
     if population:
         state = checkpoint.state
         model = population.model(model, Present(population.names(model), state.pose, state.twist))

@@ -102,11 +102,11 @@ class Simulation(Described):
         require_processes(processes, system.backend)
         self.clock = Clock.for_steps(model.time.step, model.time.shortest, model.time.end)
         self._files = {} if out is None else file_digests(model.document)
-        self._origin, self._population = model, Population()
+        self._origin, self.population = model, Population()
         earlier = None
         if resume:
             earlier, self.model, system = earlier_of(model, out, system, self.clock, self._files)
-            self._population = Population.from_json(earlier.population)
+            self.population = Population.from_dict(json.loads(earlier.population))
         self.watch = Stopwatch()
         self.mesh_updater = updater_of(model.fluid, system, self.clock, self.watch)
         self.stepper = Stepper(system, self.clock, self.mesh_updater, self.watch, model.time.tolerance)
@@ -311,8 +311,8 @@ class Simulation(Described):
             If no mesh can be made around it.
         """
         table = named_table(body)
-        refuse_known_name(self._population, self.model, table["name"])
-        self._exchange(self._population.with_body(table))
+        refuse_known_name(self.population, self.model, table["name"])
+        self._exchange(self.population.with_body(table))
 
     def remove(self, name: str) -> None:
         """Let a body leave, from now on: in a fluid, which takes its place with its velocity.
@@ -330,13 +330,13 @@ class Simulation(Described):
             If no mesh can be made without it.
         """
         refuse_unknown_name(self.model, name)
-        self._exchange(self._population.without(name))
+        self._exchange(self.population.without(name))
 
     def save(self) -> SavedRun:
         """Keep the run as it is now, in memory; what follows equals what follows `restore` to the last bit."""
         return SavedRun(
             model=self.model,
-            population=self._population,
+            population=self.population,
             state=self.state,
             memory=self.system.backend.memory(),
             system=self.system,
@@ -408,7 +408,7 @@ class Simulation(Described):
 
     def _follow(self, model: Model, system: System, population: Population) -> None:
         """Go on with a system, of the model's bodies."""
-        self.model, self._population = model, population
+        self.model, self.population = model, population
         self.stepper.system = self.mesh_updater.system = system
 
     def _facts(self) -> Mapping[str, object]:
@@ -496,7 +496,7 @@ class Simulation(Described):
             state=self.state,
             memory=memory,
             scene=json.dumps(self.model.document),
-            population=self._population.to_json(),
+            population=json.dumps(self.population.to_dict()),
             files=json.dumps(self._files),
             times=self._times,
             sizes=writer.sizes,

@@ -87,6 +87,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "rest_position": {system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())},
         **found,
         **_caller_values(state, system),
+        **({"population": simulation.population.to_dict()} if simulation.population else {}),
         "remesh_jumps": jumps,
         "remarks": [asdict(remark) for remark in remarks],
         "energy": energy_balance(state.ledger, simulation.history.energy, account),
