@@ -33,6 +33,7 @@ PART_TABLES: tuple[tuple[str, Kind[Any], Any], ...] = (
     ("fluid", FLUID_BACKEND, FluidTable),
     ("body", BODY, BodyTable),
     ("swarm.shape", BODY, SwarmShapeTable),
+    ("source.shape", BODY, SwarmShapeTable),
     ("mechanism", MECHANISM, MechanismTable),
     ("contact", DETECTOR, ContactTable),
     ("contact", FORCE_LAW, ContactTable),

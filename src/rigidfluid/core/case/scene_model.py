@@ -142,7 +142,12 @@ def _compose(scene: Scene, registry: Registry, parts: _Parts) -> Model:
         seed=scene.scene.seed,
         registry=registry,
     )
-    return model.told_by(scene, why)
+    told = model.told_by(scene, why)
+    if scene.source or scene.sink:
+        from rigidfluid.core.case.exchange import check_exchange  # few scenes have any
+
+        check_exchange(told)
+    return told
 
 
 def _names_used(scene: Scene) -> set[str]:

@@ -84,24 +84,6 @@ def _check_places(model: Model, pose: Pose) -> None:
     check_places(model, pose)
 
 
-def require_changeable(model: Model) -> None:
-    """Raise SceneError for a model whose bodies cannot change: joints, mechanisms, springs and windows go by them."""
-    found = {
-        "mechanism": model.mechanisms,
-        "joint": model.joints,
-        "body.spring or body.free": [body for body in model.bodies if body.linked_to_ground],
-        "domain.window": model.window,
-    }
-    for key, value in found.items():
-        if value:
-            remedy = f"Leave {key} out, or keep the bodies."
-            raise SceneError(key, "together with bodies that enter or leave", "one of both", remedy)
-    backend = model.fluid.backend.part
-    if not backend.exchanges_bodies:
-        found_backend, allowed = f"{backend.name!r}", "a backend whose bodies may enter and leave"
-        raise SceneError("fluid.backend", found_backend, allowed, "Use backend = 'scikit-fem' or 'dry'.")
-
-
 def named_table(body: object) -> Mapping[str, Any]:
     """A body's table as plain values, for a checkpoint; raises SceneError for what is no table with a name."""
     if not isinstance(body, Mapping):

@@ -49,7 +49,6 @@ from rigidfluid.core.run.population import (
     named_table,
     refuse_known_name,
     refuse_unknown_name,
-    require_changeable,
 )
 from rigidfluid.core.run.process import one_openblas_thread
 from rigidfluid.core.run.resumption import earlier_of, recall_memory
@@ -61,6 +60,7 @@ from rigidfluid.core.run.stopwatch import Stopwatch
 from rigidfluid.core.run.summary import summarise
 from rigidfluid.core.run.velocity_jump import halvings_after, halvings_within, shortened
 from rigidfluid.core.setup.assemble import assemble
+from rigidfluid.core.setup.changeable import require_changeable
 from rigidfluid.core.setup.model import Model
 from rigidfluid.core.setup.named_files import file_digests
 from rigidfluid.core.setup.prescribed import PrescribedMotion, prescribed_motion
@@ -211,6 +211,7 @@ class Simulation(Described):
         if self.ended:
             remedy = "Move time.end in the scene."
             raise StepError("a step", f"one after the end, {self.time:g}", f"steps until {self.clock.end:g}", remedy)
+        self._exchange_due()
         with told_memory(), self._threads():
             self.state = self.stepper.after(self.state)
         self._record()
@@ -379,6 +380,16 @@ class Simulation(Described):
         """Let other runs write to the folder; a simulation that writes takes no step after that."""
         if self._writer is not None:
             self._writer.close()
+
+    def _exchange_due(self) -> None:
+        """Let bodies enter and leave by the sources and sinks of the scene."""
+        if not (self.model.source_tables or self.model.sink_tables):
+            return
+        from rigidfluid.core.run.exchange_rules import Moment, population_due  # few scenes have any
+
+        population = population_due(Moment(self.model, self.system, self.state, self.population, self.time))
+        if population != self.population:
+            self._exchange(population)
 
     def _exchange(self, population: Population) -> None:
         """Go on with other bodies; nothing is changed where they do not fit."""

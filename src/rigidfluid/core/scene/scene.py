@@ -11,6 +11,7 @@ from rigidfluid.core.scene.body_tables import BodyTable, MechanismTable
 from rigidfluid.core.scene.boundary_tables import BoundaryTable
 from rigidfluid.core.scene.contact_tables import ContactTable, InteractionTable
 from rigidfluid.core.scene.domain_table import DomainTable
+from rigidfluid.core.scene.exchange_tables import SinkTable, SourceTable
 from rigidfluid.core.scene.fluid_table import FluidTable
 from rigidfluid.core.scene.joint_tables import JointTable
 from rigidfluid.core.scene.mesh_tables import MeshTable
@@ -55,6 +56,8 @@ class Scene(Described, Table):
     )
     body: tuple[BodyTable, ...] = ()
     swarm: tuple[SwarmTable, ...] = ()
+    source: tuple[SourceTable, ...] = ()
+    sink: tuple[SinkTable, ...] = ()
     mechanism: tuple[MechanismTable, ...] = ()
     joint: tuple[JointTable, ...] = ()
     contact: ContactTable = ContactTable()
@@ -115,7 +118,9 @@ class Scene(Described, Table):
         scene."""
         # Without keys that came later a scene is the same as before there were such, and its checkpoints go on.
         left_out: dict[str, Any] = {
-            name: True for name in ("interaction", "mechanism", "joint", "swarm") if not getattr(self, name)
+            name: True
+            for name in ("interaction", "mechanism", "joint", "swarm", "source", "sink")
+            if not getattr(self, name)
         }
         if self.fluid.initial == "rest":
             left_out["fluid"] = {"initial"}

@@ -18,7 +18,7 @@ from rigidfluid.core.scene.vectors import Vector
 MOST_BODIES = 10_000
 """Greatest number of bodies of one swarm."""
 
-_NotNegative = Annotated[float, Field(ge=0)]
+NotNegative = Annotated[float, Field(ge=0)]
 
 
 class SwarmShapeTable(OpenTable):
@@ -64,7 +64,7 @@ class TableSizes(Table):
     """Sizes of a table, as of a sieve analysis."""
 
     distribution: Literal["table"] = Field(description="Distribution of the factor")
-    rows: tuple[tuple[Positive, _NotNegative], ...] = Field(
+    rows: tuple[tuple[Positive, NotNegative], ...] = Field(
         min_length=1, description="Rows [factor, share of the bodies], the shares relative to their sum [1]"
     )
 
@@ -105,7 +105,7 @@ class SeededTable(Table):
     its bodies are among those of the scene."""
 
     number: int = Field(ge=0, description="Number of bodies")
-    fraction: _NotNegative = Field(description="Their volume over that of the region [1]")
+    fraction: NotNegative = Field(description="Their volume over that of the region [1]")
     gap: float = Field(description="Smallest gap to each other, other bodies and walls [length]")
     way: Literal["insertion", "growth", "file"] = Field(
         description="insertion: at random, one by one; growth: small bodies have grown and pushed each other away; "
@@ -113,36 +113,20 @@ class SeededTable(Table):
     )
 
 
-class SwarmTable(Table):
-    """Bodies that are seeded when the scene is loaded, in the same places for the same `scene.seed`.
-
-    Exactly one of `number`, `fraction` and `file` is given. [How to seed bodies](howto/seed-bodies.md) has examples.
-    """
+class RandomBodies(Table):
+    """Bodies whose shapes, sizes, orientations and velocities are random, and the region that holds them."""
 
     name: str = Field(
         min_length=1, pattern=PRINTABLE, description="Beginning of the names of its bodies: `grain` gives `grain0`, …"
     )
     shape: tuple[SwarmShapeTable, ...] = Field(min_length=1, description="Shapes, each with its share of the bodies")
     density: Positive = Field(description="Density of the bodies [mass/length^d]")
-    number: int | None = Field(default=None, ge=1, le=MOST_BODIES, description="Number of bodies")
-    fraction: float | None = Field(
-        default=None,
-        gt=0,
-        lt=1,
-        description="Volume of the bodies over that of the region, which the nearest number of bodies gives [1]",
-    )
-    file: str | None = Field(
-        default=None,
-        description="CSV file with a body in each row, searched for in the scene's folder. Its first row names the "
-        "columns: x, y, z, and if needed name, shape (number in the list), size or radius, density, angle or qw, qx, "
-        "qy, qz, vx, vy, vz, and w or wx, wy, wz. What has no column follows from the other keys",
-    )
     size: SizeTable | None = Field(
         default=None, description="Distribution of the factor by which lengths of the shapes are multiplied"
     )
     angle: InitialAngle = None
     orientation: InitialOrientation = None
-    tilt: _NotNegative = Field(
+    tilt: NotNegative = Field(
         default=0.0,
         description="Standard deviation of a random rotation from `angle` or `orientation`, in 3D about each axis; "
         "without these all orientations are equally likely [rad]",
@@ -156,16 +140,37 @@ class SwarmTable(Table):
         default=None, description="Region that holds all of each body; the whole domain if not given"
     )
     velocity: InitialVelocity = None
-    velocity_deviation: _NotNegative = Field(
+    velocity_deviation: NotNegative = Field(
         default=0.0,
         description="Standard deviation of a random, normally distributed part of each component of the velocity "
         "[length/time]",
     )
     angular_velocity: InitialAngularVelocity = None
-    angular_velocity_deviation: _NotNegative = Field(
+    angular_velocity_deviation: NotNegative = Field(
         default=0.0,
         description="Standard deviation of a random, normally distributed part of each component of the angular "
         "velocity [rad/time]",
+    )
+
+
+class SwarmTable(RandomBodies):
+    """Bodies that are seeded when the scene is loaded, in the same places for the same `scene.seed`.
+
+    Exactly one of `number`, `fraction` and `file` is given. [How to seed bodies](howto/seed-bodies.md) has examples.
+    """
+
+    number: int | None = Field(default=None, ge=1, le=MOST_BODIES, description="Number of bodies")
+    fraction: float | None = Field(
+        default=None,
+        gt=0,
+        lt=1,
+        description="Volume of the bodies over that of the region, which the nearest number of bodies gives [1]",
+    )
+    file: str | None = Field(
+        default=None,
+        description="CSV file with a body in each row, searched for in the scene's folder. Its first row names the "
+        "columns: x, y, z, and if needed name, shape (number in the list), size or radius, density, angle or qw, qx, "
+        "qy, qz, vx, vy, vz, and w or wx, wy, wz. What has no column follows from the other keys",
     )
     seeded: SeededTable | None = Field(
         default=None, description="Record of bodies that were seeded; written with results, and never by hand"

@@ -12,10 +12,11 @@ from rigidfluid.core.scene.swarm_tables import LogNormalSizes, NormalSizes, Size
 
 
 class Draws:
-    """Random numbers of the swarm with a ``number`` in a scene with a ``seed``; each call goes on."""
+    """Random numbers of the swarm with a number in a scene with a ``seed``, or of what else has its own ``numbers``;
+    each call goes on."""
 
-    def __init__(self, seed: int, number: int) -> None:
-        self._generator = np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, number])))
+    def __init__(self, seed: int, *numbers: int) -> None:
+        self._generator = np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, *numbers])))
 
     def uniform(self, *shape: int) -> FloatArray:
         """Numbers from 0 to less than 1, of any shape [1]."""

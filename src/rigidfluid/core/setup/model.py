@@ -21,6 +21,7 @@ from rigidfluid.core.model.mechanism import Mechanism
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.scene.boundary_tables import BoundaryTable
 from rigidfluid.core.scene.domain_table import WindowTable
+from rigidfluid.core.scene.exchange_tables import SinkTable, SourceTable
 from rigidfluid.core.scene.mesh_tables import AUTO
 from rigidfluid.core.scene.run_tables import OutputTable, TimeTable
 from rigidfluid.core.scene.scene import Scene, UnitsTable
@@ -155,8 +156,8 @@ class Model(Arrangement, Described):
         return told
 
     def with_bodies(self, bodies: tuple[RigidBody, ...]) -> Model:
-        """The same model with other bodies, told in results and checkpoints as this one; a detector that nobody named is
-        chosen for them."""
+        """The same model with other bodies, told in results and checkpoints as this one; a detector that nobody named
+        is chosen for them."""
         named = self._scene is None or self._scene.contact.detector != AUTO
         changed = replace(self, bodies=bodies, detector=self.detector if named else None)
         if self._scene is not None:
@@ -184,6 +185,16 @@ class Model(Arrangement, Described):
     def swarm_tables(self) -> tuple[SwarmTable, ...]:
         """Tables of swarms in the scene that it was made of."""
         return () if self._scene is None else self._scene.swarm
+
+    @property
+    def source_tables(self) -> tuple[SourceTable, ...]:
+        """Tables of sources in the scene that it was made of."""
+        return () if self._scene is None else self._scene.source
+
+    @property
+    def sink_tables(self) -> tuple[SinkTable, ...]:
+        """Tables of sinks in the scene that it was made of."""
+        return () if self._scene is None else self._scene.sink
 
     @property
     def wet(self) -> bool:

@@ -1,0 +1,60 @@
+"""Checks of a scene's sources and sinks, before it runs."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from rigidfluid.core.model.types import Pose
+from rigidfluid.core.scene.all_errors import all_told
+from rigidfluid.core.scene.exchange_tables import SinkTable, SourceTable
+from rigidfluid.core.seeding.draws import Draws
+from rigidfluid.core.seeding.placement import Others
+from rigidfluid.core.seeding.regions import region_of
+from rigidfluid.core.seeding.seed import Occupied, seed
+from rigidfluid.core.setup.changeable import require_changeable
+from rigidfluid.core.setup.model import Model
+from rigidfluid.errors import SceneError
+
+
+def check_exchange(model: Model) -> None:
+    """Raise SceneError or PluginError for sources and sinks that are wrong, or that bodies of the model cannot have."""
+    with all_told() as ask:
+        ask(require_changeable, model)
+        for number, source in enumerate(model.source_tables):
+            ask(_check_source, source, f"source.{number}", model)
+        for number, sink in enumerate(model.sink_tables):
+            ask(_check_sink, sink, f"sink.{number}", model)
+
+
+def _check_source(table: SourceTable, at: str, model: Model) -> None:
+    if (table.times is None) == (table.every is None):
+        found = "neither" if table.times is None else "both"
+        raise SceneError(f"{at}.every", f"{found} of times and every", "one of them", "Say when bodies enter.")
+    if table.times is not None and (table.number is not None or table.start):
+        key = "start" if table.start else "number"
+        raise SceneError(f"{at}.{key}", f"{key} together with times", f"{key} with every", "Leave it out.")
+    if table.times is not None and sorted(table.times) != list(table.times):
+        raise SceneError(f"{at}.times", list(table.times), "times in order", "Sort them.")
+    alike = [name for name in model.surfaces if re.fullmatch(rf"{re.escape(table.name)}\d+", name)]
+    if alike:
+        allowed = f"a name whose numbers, as {table.name}0, nobody else has: there is {alike[0]!r}"
+        raise SceneError(f"{at}.name", repr(table.name), allowed, "Choose another name.")
+    dimension = model.dimension
+    nobody = Others((), Pose(np.zeros((0, dimension)), np.zeros((0, 1 if dimension == 2 else 4))))
+    seed(table.swarm(0), at, Draws(model.seed), Occupied(model.domain, nobody, model.registry))
+
+
+def _check_sink(table: SinkTable, at: str, model: Model) -> None:
+    if (table.region is None) == (table.on is None):
+        found = "neither" if table.on is None else "both"
+        raise SceneError(f"{at}.on", f"{found} of region and on", "one of them", "Say where bodies leave.")
+    if table.region is not None:
+        if table.gap is not None:
+            raise SceneError(f"{at}.gap", "gap together with region", "gap with on", "Leave it out.")
+        region_of(table.region, model.domain, f"{at}.region", model.registry)
+    elif table.on not in model.domain.names:
+        raise SceneError(
+            f"{at}.on", repr(table.on), f"a surface: {', '.join(model.domain.names)}", "Name one of these."
+        )

@@ -1,0 +1,87 @@
+"""Bodies that are due to enter or leave, by the sources and sinks of a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from rigidfluid.core.model.state import State
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import Pose
+from rigidfluid.core.run.population import Population
+from rigidfluid.core.scene.exchange_tables import SinkTable
+from rigidfluid.core.seeding.draws import Draws
+from rigidfluid.core.seeding.placement import Others
+from rigidfluid.core.seeding.regions import region_of
+from rigidfluid.core.seeding.seed import Occupied, seed
+from rigidfluid.core.setup.model import Model
+from rigidfluid.errors import SceneError
+
+_SOURCES = 1_000_000
+"""First number of draws of sources: swarms have lower ones."""
+
+
+class Moment(NamedTuple):
+    """A run at a ``time``: its ``model``, ``system``, ``state``, and the ``population`` until then."""
+
+    model: Model
+    system: System
+    state: State
+    population: Population
+    time: float
+
+
+def population_due(now: Moment) -> Population:
+    """The population with those who are due to leave or enter now; the same if nobody is."""
+    population, leaving = now.population, _leaving(now)
+    for row in leaving:
+        population = population.without(now.system.surfaces[row])
+    others = _others(now, leaving)
+    for number in range(len(now.model.source_tables)):
+        population, others = _after_source(now, number, population, others)
+    return population
+
+
+def _others(now: Moment, leaving: Sequence[int]) -> Others:
+    stay, pose = np.setdiff1d(np.arange(len(now.system.bodies)), leaving), now.state.pose
+    return Others(tuple(now.system.bodies[row] for row in stay), Pose(pose.position[stay], pose.orientation[stay]))
+
+
+def _after_source(now: Moment, number: int, population: Population, others: Others) -> tuple[Population, Others]:
+    """Population and bodies with those that are due from one source, as far as there is room for them."""
+    source, model = now.model.source_tables[number], now.model
+    due, known = source.due(now.time), {table["name"] for table in population.entered}
+    for count in range(due):
+        if (name := f"{source.name}{count}") in known:
+            continue
+        draws = Draws(model.seed, _SOURCES + number, count)
+        try:
+            found = seed(source.swarm(count), f"source.{number}", draws, Occupied(model.domain, others, model.registry))
+        except SceneError:
+            break  # among others: without them there is room, which was seen when the scene was loaded
+        population, others = population.with_body({**found.tables[0], "name": name}), found.bodies
+    return population, others
+
+
+def _leaving(now: Moment) -> list[int]:
+    """Rows of free bodies that have come to a sink, all but one if nobody else is there."""
+    if not now.model.sink_tables:
+        return []
+    rows = [row for row in np.flatnonzero(~now.system.prescribed).tolist() if _has_come(now, row)]
+    return rows[: len(now.system.bodies) - 1]
+
+
+def _has_come(now: Moment, row: int) -> bool:
+    return any(_is_at(now, row, sink, f"sink.{number}") for number, sink in enumerate(now.model.sink_tables))
+
+
+def _is_at(now: Moment, row: int, sink: SinkTable, at: str) -> bool:
+    centre, domain = now.state.pose.position[row : row + 1], now.model.domain
+    if sink.region is not None:
+        return bool(region_of(sink.region, domain, f"{at}.region", now.model.registry).contains(centre)[0])
+    assert sink.on is not None
+    radius = now.system.bounding_radii[row]
+    distance = domain.pieces[domain.names.index(sink.on)].shape.signed_distance(centre)[0] - radius
+    return bool(distance <= (radius if sink.gap is None else sink.gap))
