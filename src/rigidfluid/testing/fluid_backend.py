@@ -7,6 +7,7 @@ from rigidfluid.testing.fluid.balances import BalancesContract
 from rigidfluid.testing.fluid.carried import CarriedContract
 from rigidfluid.testing.fluid.curved import CurvedContract
 from rigidfluid.testing.fluid.cylinder import CylinderContract
+from rigidfluid.testing.fluid.exchange import ExchangeContract
 from rigidfluid.testing.fluid.galilean import GalileanContract
 from rigidfluid.testing.fluid.initial import InitialFlowContract
 from rigidfluid.testing.fluid.linked import LinkedContract
@@ -24,6 +25,7 @@ class FluidBackendContract(
     CarriedContract,
     CurvedContract,
     CylinderContract,
+    ExchangeContract,
     GalileanContract,
     InitialFlowContract,
     LinkedContract,

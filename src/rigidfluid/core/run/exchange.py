@@ -18,8 +18,13 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.tangential_springs import TangentialSprings, spring_energy
 from rigidfluid.core.model.types import Pose, Twist, Wrench
 from rigidfluid.core.run.clock import Clock
+from rigidfluid.core.run.control import following, present_motion
 from rigidfluid.core.run.initial_state import start_level
+from rigidfluid.core.run.population import Population, Present, assemble_present
 from rigidfluid.core.run.step import bodies_energy, stored_energy
+from rigidfluid.core.setup.changeable import require_changeable
+from rigidfluid.core.setup.model import Model
+from rigidfluid.core.setup.prescribed import PrescribedMotion, prescribed_motion
 
 
 @dataclass(frozen=True)
@@ -85,10 +90,33 @@ class Exchange:
         return velocities
 
 
-def exchanged(exchange: Exchange, state: State, updater: Updater, clock: Clock, prescription: Prescription) -> State:
-    """The state among the bodies after an exchange, at the same time, on a new mesh; raises MeshError where there is
+@dataclass(frozen=True)
+class Successor:
+    """Bodies that a run goes on with: their ``model``, the ``exchange`` that leads to their system, and the
+    ``prescription`` of their motions."""
+
+    model: Model
+    exchange: Exchange
+    prescription: Prescription
+
+
+def successor(origin: Model, model: Model, system: System, state: State, population: Population) -> Successor:
+    """The bodies of a ``population`` of the model ``origin`` after those of a ``model`` and ``system`` in a ``state``;
+    raises SceneError where they cannot be, or overlap."""
+    require_changeable(model)
+    now = population.model(origin, Present(_names(system), state.pose, state.twist))
+    after = assemble_present(now)
+    exchange = Exchange.between(system, after)
+    given = prescribed_motion(now.bodies, after.pose).rows
+    prescription = exchange.prescription(present_motion(model, system, state).rows, given)
+    after = following(after, PrescribedMotion(prescription))
+    return Successor(now, replace(exchange, after=after), prescription)
+
+
+def exchanged(successor: Successor, state: State, updater: Updater, clock: Clock) -> State:
+    """The state among the bodies of a successor, at the same time, on a new mesh; raises MeshError where there is
     none."""
-    system = exchange.after
+    exchange, system = successor.exchange, successor.exchange.after
     pose, twist = exchange.pose(state.pose, system.pose), exchange.twist(state.twist, system.twist)
     mesh = updater.first_mesh()
     filling = exchange.filling(state.pose, state.twist)
@@ -117,7 +145,7 @@ def exchanged(exchange: Exchange, state: State, updater: Updater, clock: Clock, 
         ledger=ledger,
         remesh_failed=None,
         estimate=None if state.estimate is None else state.estimate.restarted,
-        prescription=prescription,
+        prescription=successor.prescription,
         applied=None if state.applied is None else exchange.wrench(state.applied),
         springs=springs,
     )

@@ -45,6 +45,9 @@ def remesh_jumps(history: History, radii: Mapping[str, float]) -> dict[str, dict
         mine = bodies["body"] == name
         time = bodies["time"][mine]
         rows = np.searchsorted(time, steps["time"][first] - 1e-9 * time[-1])
+        rows = rows[(rows >= _START + 2) & (rows < len(time))]  # bodies may enter and leave
+        if not len(rows):
+            continue
         values = {load: np.column_stack([bodies[axis][mine] for axis in axes]) for load, axes in loads.items()}
         extent = {load: float(np.ptp(each[_START:], axis=0).max()) for load, each in values.items()}
         extent["torque"] = max(extent["torque"], _NOISE * radius * extent["force"])

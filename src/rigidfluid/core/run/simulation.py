@@ -38,14 +38,12 @@ from rigidfluid.core.run.caller_input import (
 )
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.control import body_row, following, present_motion, with_applied
-from rigidfluid.core.run.exchange import Exchange, exchanged
+from rigidfluid.core.run.exchange import exchanged, successor
 from rigidfluid.core.run.initial_state import initial_state
 from rigidfluid.core.run.mesh_keys import updater_of
 from rigidfluid.core.run.observers import Observer, Observers
 from rigidfluid.core.run.population import (
     Population,
-    Present,
-    assemble_present,
     named_table,
     refuse_known_name,
     refuse_unknown_name,
@@ -60,10 +58,9 @@ from rigidfluid.core.run.stopwatch import Stopwatch
 from rigidfluid.core.run.summary import summarise
 from rigidfluid.core.run.velocity_jump import halvings_after, halvings_within, shortened
 from rigidfluid.core.setup.assemble import assemble
-from rigidfluid.core.setup.changeable import require_changeable
 from rigidfluid.core.setup.model import Model
 from rigidfluid.core.setup.named_files import file_digests
-from rigidfluid.core.setup.prescribed import PrescribedMotion, prescribed_motion
+from rigidfluid.core.setup.prescribed import PrescribedMotion
 from rigidfluid.described import Described, first_names
 from rigidfluid.errors import ArgumentError, OutputError, StepError
 
@@ -358,9 +355,9 @@ class Simulation(Described):
                 "a run in memory",
                 "Make the Simulation without a folder, or resume the run from its checkpoint.",
             )
+        self._follow(saved.model, saved.system, saved.population)
         self.system.backend.recall(saved.memory, saved.state.mesh)
         self.state, self.extremes = saved.state, saved.extremes
-        self._follow(saved.model, saved.system, saved.population)
         self.stepper.counts = replace(saved.counts)
         self.history.cut(saved.rows)
         self._observers.go_back(saved.reached)
@@ -393,29 +390,16 @@ class Simulation(Described):
 
     def _exchange(self, population: Population) -> None:
         """Go on with other bodies; nothing is changed where they do not fit."""
-        require_changeable(self.model)
-        before, state = self.system, self.state
-        names = tuple(body.name for body in self.model.bodies)
-        model = population.model(self._origin, Present(names, state.pose, state.twist))
+        before = self.model, self.system, self.population
         with told_memory(), self._threads(), self.watch("mesh"):
-            system = assemble_present(model)
-            exchange = Exchange.between(before, system)
-            motion = PrescribedMotion(
-                exchange.prescription(
-                    present_motion(self.model, before, state).rows, prescribed_motion(model.bodies, system.pose).rows
-                )
-            )
-            system = following(system, motion)
-            exchange = replace(exchange, after=system)
-            self.mesh_updater.system = system
+            next_one = successor(self._origin, self.model, self.system, self.state, population)
+            self._follow(next_one.model, next_one.exchange.after, population)
             try:
-                after = exchanged(exchange, state, self.mesh_updater, self.clock, motion.rows)
+                self.state = exchanged(next_one, self.state, self.mesh_updater, self.clock)
             except BaseException:
-                self.mesh_updater.system = before
+                self._follow(*before)
                 raise
-        self._follow(model, system, population)
-        self.extremes = self.extremes.among(exchange.kept, len(system.bodies))
-        self.state = after
+        self.extremes = self.extremes.among(next_one.exchange.kept, len(self.system.bodies))
 
     def _follow(self, model: Model, system: System, population: Population) -> None:
         """Go on with a system, of the model's bodies."""

@@ -27,17 +27,17 @@ def turn_remarks(history: History, account: EnergyAccount) -> list[Remark]:
         return []
     components = quantity_columns(history.dimension)["angular_velocity"]
     bodies = history.table("bodies", ("time", "body", *components))
-    count = len(np.unique(bodies["body"]))
-    time = bodies["time"].reshape(-1, count)
-    angular_speed = np.sqrt(sum(np.square(bodies[name].reshape(-1, count)) for name in components))
-    turn = np.max(np.diff(time, axis=0) * angular_speed[1:], axis=0)
+    order = np.argsort(bodies["body"], kind="stable")  # bodies may enter and leave
+    name, time = bodies["body"][order], bodies["time"][order]
+    angular_speed = np.sqrt(sum(np.square(bodies[component][order]) for component in components))
+    turn = np.where(name[1:] == name[:-1], np.diff(time) * angular_speed[1:], 0.0)
     worst = int(np.argmax(turn))
     if turn[worst] <= FARTHEST_TURN:
         return []
-    name, step = str(bodies["body"][worst]), FARTHEST_TURN / float(angular_speed[:, worst].max())
+    step = FARTHEST_TURN / float(angular_speed[name == name[worst]].max())
     text = (
-        f"{name!r} turned by up to {turn[worst]:.2g} rad in a step: flow that is carried round with it loses its "
-        f"energy, and above 1 rad halving time.step may not show it"
+        f"{str(name[worst])!r} turned by up to {turn[worst]:.2g} rad in a step: flow that is carried round with it "
+        f"loses its energy, and above 1 rad halving time.step may not show it"
     )
     remedy = f"Set time.step to {step:.2g} or less, {FARTHEST_TURN:g} rad a step, "
     return [Remark("warning", text, remedy + f"or time.tolerance to {ADVISED_TOLERANCE:g}.")]

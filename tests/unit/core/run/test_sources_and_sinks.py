@@ -1,0 +1,130 @@
+"""Bodies enter and leave by the tables of a scene."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scenes import dry_tables, wet_tables
+
+from rigidfluid.api import Simulation, scene_from_dict
+from rigidfluid.errors import SceneError, SceneErrors
+
+POST = {"name": "post", "type": "sphere", "radius": 0.1, "density": 2.0, "position": [0.8, 0.8], "fixed": True}
+SHAPE = [{"type": "sphere", "radius": 0.05}]
+REGION = {"type": "box", "lower": [0.1, 0.6], "upper": [0.5, 0.9]}
+SOURCE = {"name": "grain", "shape": SHAPE, "density": 2.0, "region": REGION, "velocity": [0.0, -1.0]}
+SINK = {"on": "bottom", "gap": 0.1}
+
+
+def tables(**changes: Any) -> dict[str, Any]:
+    given = {"source": [SOURCE | {"every": 0.2}], "sink": [SINK], "fluid": {"gravity": [0.0, 0.0]}, "end": 1.0}
+    return dry_tables(POST, **(given | changes))
+
+
+def names_over_time(run: Simulation) -> dict[str, tuple[float, float]]:
+    """First and last time of each body in the table."""
+    bodies = run.history.bodies
+    return {
+        str(name): (bodies["time"][bodies["body"] == name].min(), bodies["time"][bodies["body"] == name].max())
+        for name in np.unique(bodies["body"])
+    }
+
+
+def test_bodies_enter_at_intervals_and_leave_at_a_surface() -> None:
+    run = Simulation(scene_from_dict(tables()))
+    run.go()
+    there = names_over_time(run)
+    assert {name: pytest.approx(first, abs=1e-9) for name, (first, _) in there.items() if name != "post"} == {
+        f"grain{number}": 0.2 * number + 0.01 for number in range(5)
+    }
+    bodies = run.history.bodies
+    left = [name for name, (_, last) in there.items() if last < 1.0 - 1e-9]
+    assert len(left) >= 2
+    for name in left:
+        lowest = bodies["y"][bodies["body"] == name].min()
+        assert 0.15 - 0.0101 <= lowest <= 0.15
+    entered, gone = 5, len(left)
+    energy = 0.5 * 2.0 * np.pi * 0.05**2
+    assert run.state.ledger.exchange == pytest.approx((entered - gone) * energy, rel=1e-12)
+    assert abs(run.state.ledger.residual) < 1e-13
+
+
+def test_bodies_enter_at_given_times() -> None:
+    run = Simulation(scene_from_dict(tables(source=[SOURCE | {"times": [0.1, 0.1, 0.35]}], sink=[], end=0.4)))
+    run.go()
+    first = {name: when for name, (when, _) in names_over_time(run).items() if name != "post"}
+    assert first == {"grain0": pytest.approx(0.11), "grain1": pytest.approx(0.11), "grain2": pytest.approx(0.36)}
+
+
+def test_a_source_ends_with_its_number() -> None:
+    run = Simulation(scene_from_dict(tables(source=[SOURCE | {"every": 0.1, "number": 3, "start": 0.3}], sink=[])))
+    run.go()
+    assert list(run.bodies) == ["post", "grain0", "grain1", "grain2"]
+
+
+def test_a_body_waits_for_room() -> None:
+    """The region holds one ball, and each must be gone before the next one enters."""
+    narrow = {"type": "box", "lower": [0.2, 0.7], "upper": [0.32, 0.82]}
+    run = Simulation(scene_from_dict(tables(source=[SOURCE | {"every": 0.02, "region": narrow}], sink=[])))
+    run.go(0.25)
+    first = sorted(when for name, (when, _) in names_over_time(run).items() if name != "post")
+    assert len(first) >= 2
+    assert all(gap >= 0.1 - 0.02 for gap in np.diff(first))
+
+
+def test_bodies_leave_in_a_region() -> None:
+    region = {"type": "box", "lower": [0.0, 0.0], "upper": [1.0, 0.4]}
+    run = Simulation(scene_from_dict(tables(sink=[{"region": region}])))
+    run.go()
+    there = names_over_time(run)
+    bodies = run.history.bodies
+    assert min(bodies["y"]) >= 0.4 - 0.0101
+    assert there["grain0"][1] < 0.6
+
+
+def test_the_same_seed_gives_the_same_bodies_after_resuming(tmp_path: Path) -> None:
+    changes: dict[str, Any] = {"source": [SOURCE | {"every": 0.06, "velocity_deviation": 0.1}], "sink": [SINK]}
+    changes |= {"end": 0.2, "output": {"every": 0.1}, "fluid": {"gravity": [0.0, -1.0]}, "step": 0.02}
+    case = scene_from_dict(wet_tables(POST, **changes))
+    whole = Simulation(case)
+    whole.go()
+    run = Simulation(case, tmp_path)
+    run.go(0.1)
+    run.close()
+    resumed = Simulation(case, tmp_path, resume=True)
+    resumed.go()
+    assert list(resumed.bodies) == list(whole.bodies)
+    assert len(resumed.bodies) > 2
+    np.testing.assert_array_equal(resumed.state.pose.position, whole.state.pose.position)
+    resumed.finish("complete")
+    resumed.close()
+
+
+@pytest.mark.parametrize(
+    ("changes", "field"),
+    [
+        ({"source": [SOURCE]}, "source.0.every"),
+        ({"source": [SOURCE | {"every": 0.1, "times": [0.1]}]}, "source.0.every"),
+        ({"source": [SOURCE | {"times": [0.2, 0.1]}]}, "source.0.times"),
+        ({"source": [SOURCE | {"times": [0.2], "number": 3}]}, "source.0.number"),
+        ({"source": [SOURCE | {"every": 0.1, "name": "post", "shape": [{"type": "sphere"}]}]}, "source.0.shape.0"),
+        ({"source": [SOURCE | {"every": 0.1, "region": REGION | {"lower": [1.1, 0.6], "upper": [1.5, 0.9]}}]}, "source.0.region"),
+        ({"sink": [{}]}, "sink.0.on"),
+        ({"sink": [{"on": "outlet"}]}, "sink.0.on"),
+        ({"sink": [{"region": REGION, "gap": 0.1}]}, "sink.0.gap"),
+        ({"joint": [{"type": "rod", "between": ["post"], "at": [0.5, 0.5]}]}, "joint"),
+    ],
+)
+def test_wrong_tables_are_told_by_their_keys(changes: dict[str, Any], field: str) -> None:
+    with pytest.raises((SceneError, SceneErrors), match=field.replace(".", r"\.")):
+        scene_from_dict(tables(**changes))
+
+
+def test_a_name_that_a_body_has() -> None:
+    with pytest.raises(SceneError, match="grain1"):
+        scene_from_dict(
+            dry_tables(POST, POST | {"name": "grain1", "position": [0.2, 0.2]}, source=[SOURCE | {"every": 1.0}])
+        )
