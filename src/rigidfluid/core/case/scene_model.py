@@ -144,7 +144,7 @@ def _compose(scene: Scene, registry: Registry, parts: _Parts) -> Model:
     )
     told = model.told_by(scene, why)
     if scene.source or scene.sink:
-        from rigidfluid.core.case.exchange import check_exchange  # few scenes have any
+        from rigidfluid.core.case.exchange_checks import check_exchange  # few scenes have any
 
         check_exchange(told)
     return told

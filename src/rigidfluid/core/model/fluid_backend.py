@@ -112,8 +112,8 @@ class FluidBackend(Part):
         """The flow of another backend of this class around other bodies, on a mesh around those of this one; and its
         kinetic energy [energy].
 
-        The bodies have this ``pose`` and ``twist``; ``filling(points)`` gives the velocity where others have left.
-        Of all flows with the twists at the bodies it is the nearest to the one before. The earlier state is forgotten.
+        The bodies have this ``pose`` and ``twist``; ``filling(points)`` gives the velocity where others have left. It
+        is the flow nearest to the one before, of all that go with the bodies; the state one step earlier is forgotten.
         """
         raise NotImplementedError
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rigidfluid.core.case.population import Population, Present, assemble_present
 from rigidfluid.core.contact.pairs.proximity import detect_contacts_and_gaps
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.frames import distance_to_body
@@ -20,7 +21,6 @@ from rigidfluid.core.model.types import Pose, Twist, Wrench
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.control import following, present_motion
 from rigidfluid.core.run.initial_state import start_level
-from rigidfluid.core.run.population import Population, Present, assemble_present
 from rigidfluid.core.run.step import bodies_energy, stored_energy
 from rigidfluid.core.setup.changeable import require_changeable
 from rigidfluid.core.setup.model import Model

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from rigidfluid.core.case.population import Population, Present, assemble_present
 from rigidfluid.core.mesh.distribution import joined, partition, parts_of, shared
 from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.model.state import State
@@ -19,7 +20,6 @@ from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.writer import checkpoint_name, earlier_parts, earlier_run, ranks_of_run
 from rigidfluid.core.run.checkpoint_fit import require_fit, require_fluid
 from rigidfluid.core.run.clock import Clock
-from rigidfluid.core.run.population import Population, Present, assemble_present
 from rigidfluid.core.scene.earlier import tables_now
 from rigidfluid.core.scene.fluid_table import FluidTable
 from rigidfluid.core.setup.model import Model

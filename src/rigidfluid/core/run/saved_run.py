@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from rigidfluid.core.case.population import Population
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import FluidState
 from rigidfluid.core.output.extremes import Extremes
-from rigidfluid.core.run.population import Population
 from rigidfluid.core.run.stepper import Counts
 from rigidfluid.core.setup.model import Model
 from rigidfluid.errors import SceneError

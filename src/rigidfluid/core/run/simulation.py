@@ -10,6 +10,13 @@ from pathlib import Path
 
 import numpy as np
 
+from rigidfluid.core.case.population import (
+    Population,
+    named_table,
+    refuse_known_name,
+    refuse_unknown_name,
+    require_one_process,
+)
 from rigidfluid.core.case.scene_model import Case, model_of
 from rigidfluid.core.coupling.contact_forces import contact_forces
 from rigidfluid.core.geometry.value_types import describe
@@ -42,12 +49,6 @@ from rigidfluid.core.run.exchange import exchanged, successor
 from rigidfluid.core.run.initial_state import initial_state
 from rigidfluid.core.run.mesh_keys import updater_of
 from rigidfluid.core.run.observers import Observer, Observers
-from rigidfluid.core.run.population import (
-    Population,
-    named_table,
-    refuse_known_name,
-    refuse_unknown_name,
-)
 from rigidfluid.core.run.process import one_openblas_thread
 from rigidfluid.core.run.resumption import earlier_of, recall_memory
 from rigidfluid.core.run.run_timer import RunTimer
@@ -382,7 +383,8 @@ class Simulation(Described):
         """Let bodies enter and leave by the sources and sinks of the scene."""
         if not (self.model.source_tables or self.model.sink_tables):
             return
-        from rigidfluid.core.run.exchange_rules import Moment, population_due  # few scenes have any
+        require_one_process(self.system.backend)
+        from rigidfluid.core.case.population_due import Moment, population_due  # few scenes have any
 
         population = population_due(Moment(self.model, self.system, self.state, self.population, self.time))
         if population != self.population:
@@ -390,6 +392,7 @@ class Simulation(Described):
 
     def _exchange(self, population: Population) -> None:
         """Go on with other bodies; nothing is changed where they do not fit."""
+        require_one_process(self.system.backend)
         before = self.model, self.system, self.population
         with told_memory(), self._threads(), self.watch("mesh"):
             next_one = successor(self._origin, self.model, self.system, self.state, population)

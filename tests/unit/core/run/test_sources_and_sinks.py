@@ -15,6 +15,7 @@ from rigidfluid.errors import SceneError, SceneErrors
 POST = {"name": "post", "type": "sphere", "radius": 0.1, "density": 2.0, "position": [0.8, 0.8], "fixed": True}
 SHAPE = [{"type": "sphere", "radius": 0.05}]
 REGION = {"type": "box", "lower": [0.1, 0.6], "upper": [0.5, 0.9]}
+OUTSIDE = {"type": "box", "lower": [1.1, 0.6], "upper": [1.5, 0.9]}
 SOURCE = {"name": "grain", "shape": SHAPE, "density": 2.0, "region": REGION, "velocity": [0.0, -1.0]}
 SINK = {"on": "bottom", "gap": 0.1}
 
@@ -111,7 +112,7 @@ def test_the_same_seed_gives_the_same_bodies_after_resuming(tmp_path: Path) -> N
         ({"source": [SOURCE | {"times": [0.2, 0.1]}]}, "source.0.times"),
         ({"source": [SOURCE | {"times": [0.2], "number": 3}]}, "source.0.number"),
         ({"source": [SOURCE | {"every": 0.1, "name": "post", "shape": [{"type": "sphere"}]}]}, "source.0.shape.0"),
-        ({"source": [SOURCE | {"every": 0.1, "region": REGION | {"lower": [1.1, 0.6], "upper": [1.5, 0.9]}}]}, "source.0.region"),
+        ({"source": [SOURCE | {"every": 0.1, "region": OUTSIDE}]}, "source.0.region"),
         ({"sink": [{}]}, "sink.0.on"),
         ({"sink": [{"on": "outlet"}]}, "sink.0.on"),
         ({"sink": [{"region": REGION, "gap": 0.1}]}, "sink.0.gap"),

@@ -9,6 +9,7 @@ from typing import Any
 from rigidfluid.core.case.scene_model import scene_body
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.value_types import describe
+from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Pose, Twist
 from rigidfluid.core.scene.body_tables import BodyTable
@@ -82,6 +83,13 @@ def assemble_present(model: Model) -> System:
 def _check_places(model: Model, pose: Pose) -> None:
     check_shapes(model.shapes)
     check_places(model, pose)
+
+
+def require_one_process(backend: FluidBackend) -> None:
+    """Raise SceneError where several processes share the run."""
+    if backend.ranks.size > 1:
+        found = f"{backend.ranks.size} together with bodies that enter or leave"
+        raise SceneError("processes", found, "one process", "Run it on one.")
 
 
 def named_table(body: object) -> Mapping[str, Any]:

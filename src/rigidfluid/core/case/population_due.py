@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rigidfluid.core.case.population import Population
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Pose
-from rigidfluid.core.run.population import Population
 from rigidfluid.core.scene.exchange_tables import SinkTable
 from rigidfluid.core.seeding.draws import Draws
 from rigidfluid.core.seeding.placement import Others
