@@ -101,7 +101,10 @@ def check(case: Case) -> Report:
         start = initial_contacts(system.domain, model.exact_detector, system.bodies, system.pose, gap_reach(system))
         spot_check(system, system.pose, None, 0)
         found = sorted(findings(model, system, start), key=lambda finding: GRADES.index(finding.grade))
-        rows = tuple(features(system, model.fluid.mesh)), tuple(_rows(system, start))
+        rows = (
+            tuple(features(system, model.fluid.mesh, len(model.source_tables), len(model.sink_tables))),
+            tuple(_rows(system, start)),
+        )
         pairs = tuple(pair_rows(system, model.fluid.mesh))
         return Report(model.name, domain_row(model), *rows, pairs, tuple(found))
 

@@ -28,8 +28,8 @@ class Feature:
     why: str
 
 
-def features(system: System, mesh: MeshTable | None) -> Iterator[Feature]:
-    """Yield each feature that a scene may have: whether it is on, and why."""
+def features(system: System, mesh: MeshTable | None, sources: int = 0, sinks: int = 0) -> Iterator[Feature]:
+    """Yield each feature that a scene with so many ``sources`` and ``sinks`` may have: whether it is on, and why."""
     problem, backend = system.fluid, system.backend_type
     if problem is None:
         yield Feature("fluid", False, f"backend {backend.name!r} has no viscosity to work with")
@@ -40,6 +40,8 @@ def features(system: System, mesh: MeshTable | None) -> Iterator[Feature]:
     yield from _contact(system)
     yield _joints(system)
     yield _count("prescribed motion", system.prescribed, "fixed or prescribed")
+    tables = f"number of tables: {sources} [[source]], {sinks} [[sink]]"
+    yield Feature("bodies that enter or leave", sources + sinks > 0, tables)
 
 
 def _fluid(problem: FluidProblem) -> Iterator[Feature]:
