@@ -43,7 +43,7 @@ def _check_source(table: SourceTable, at: str, model: Model) -> None:
         raise SceneError(f"{at}.name", repr(table.name), allowed, "Choose another name.")
     dimension = model.dimension
     nobody = Others((), Pose(np.zeros((0, dimension)), np.zeros((0, 1 if dimension == 2 else 4))))
-    seed(table.swarm(0), at, Draws(model.seed), Occupied(model.domain, nobody, model.registry))
+    seed(table.swarm(0), at, Draws(model.seed), Occupied(model.domain, nobody, model.registry), grow=False)
 
 
 def _check_sink(table: SinkTable, at: str, model: Model) -> None:

@@ -58,7 +58,8 @@ def _after_source(now: Moment, number: int, population: Population, others: Othe
             continue
         draws = Draws(model.seed, _SOURCES + number, count)
         try:
-            found = seed(source.swarm(count), f"source.{number}", draws, Occupied(model.domain, others, model.registry))
+            occupied = Occupied(model.domain, others, model.registry)
+            found = seed(source.swarm(count), f"source.{number}", draws, occupied, grow=False)
         except SceneError:
             break  # among others: without them there is room, which was seen when the scene was loaded
         population, others = population.with_body({**found.tables[0], "name": name}), found.bodies

@@ -50,25 +50,28 @@ class Others:
 
 @dataclass(frozen=True)
 class Placement:
-    """Places for the bodies of a ``swarm`` in a ``region`` with ``surroundings``, among ``others``; raises SceneError
-    where there is not enough room."""
+    """Places for the bodies of a ``swarm`` in a ``region`` with ``surroundings``, among ``others``, which bodies in
+    full size find or, if they may ``grow``, smaller ones; raises SceneError where there is not enough room."""
 
     swarm: Swarm
     region: Region
     surroundings: Surroundings
     others: Others
     draws: Draws
+    grow: bool = True
 
     def placed(self, orientation: FloatArray, turning: bool) -> tuple[Pose, Literal["insertion", "growth"]]:
         """Pose of the bodies, and how it was found, from orientations (n, q), which growth changes if ``turning``."""
         self._refuse_overfull()
         self._refuse_narrow()
-        scale = self._first_scale()
+        scale = self._first_scale() if self.grow else 1.0
         while scale > _SMALLEST:
             position = self._inserted(scale)
             if position is not None:
                 start = Pose(position, orientation)
                 return (start, "insertion") if scale == 1.0 else (self._grown(start, scale, turning), "growth")
+            if not self.grow:
+                break
             scale *= _SMALLER
         raise self._stuck(0.0)
 

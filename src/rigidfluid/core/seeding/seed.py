@@ -45,9 +45,9 @@ class Occupied:
     registry: Registry
 
 
-def seed(table: SwarmTable, at: str, draws: Draws, occupied: Occupied) -> Seeded:
-    """Bodies of a swarm in a domain among others; raises SceneError or PluginError for what is wrong with its table,
-    and where there is not enough room."""
+def seed(table: SwarmTable, at: str, draws: Draws, occupied: Occupied, grow: bool = True) -> Seeded:
+    """Bodies of a swarm in a domain among others, dense ones by growth if they may ``grow``; raises SceneError or
+    PluginError for what is wrong with its table, and where there is not enough room."""
     domain, others, registry = occupied.domain, occupied.others, occupied.registry
     _check_table(table, at, domain.dimension)
     whole, region = DomainRegion(domain), region_of(table.region, domain, f"{at}.region", registry)
@@ -68,7 +68,7 @@ def seed(table: SwarmTable, at: str, draws: Draws, occupied: Occupied) -> Seeded
     if rows:
         pose = _listed(rows, columns(swarm.dimension)[:2], orientation)
     else:
-        pose, way = Placement(swarm, region, surroundings, others, draws).placed(orientation, turning)
+        pose, way = Placement(swarm, region, surroundings, others, draws, grow).placed(orientation, turning)
     gap, body = nearest(swarm.bodies, pose, others, surroundings, 2.0 * swarm.gap)
     if rows and not gap > 0.0:
         raise _overlap(f"{at}.file, line {rows[body]['line']}", pose.position[body], gap)
