@@ -44,10 +44,10 @@ def scene(step: float) -> Scene:
     return rigidfluid.scene_from_dict(
         {
             "scene": {"name": "enter_and_leave", "dimension": 2, "seed": 1},
-            "fluid": {"density": 1.0, "viscosity": 0.02, "gravity": [0.0, -6.0]},
+            "fluid": {"density": 1.0, "viscosity": 0.02, "gravity": [0.0, -30.0]},
             "domain": {"lower": [0.0, 0.0], "upper": [1.0, 2.0]},
             "body": [
-                {"name": "post", "type": "sphere", "radius": 0.1, "density": 1.0, "position": [0.5, 0.9], "fixed": True}
+                {"name": "post", "type": "sphere", "radius": 0.1, "density": 1.0, "position": [0.15, 0.5], "fixed": True}
             ],
             "source": [
                 {
@@ -67,8 +67,8 @@ def scene(step: float) -> Scene:
             "sink": [{"on": "bottom", "gap": 0.08}],
             "contact": {"law": "normal", "range": 0.03, "epsilon": "auto"},
             "mesh": {"size": 0.12, "size_body": 0.04},
-            "time": {"end": 9.0, "step": step},
-            "output": {"every": 9.0},
+            "time": {"end": 8.0, "step": step},
+            "output": {"every": 8.0},
         }
     )
 
