@@ -68,7 +68,7 @@ def _earlier(scene: Scene, folder: Path) -> Results | None:
     except RigidfluidError:
         return None
     same = results.summary["status"] == "complete" and tables_now(results.summary["scene"]) == scene.to_dict()
-    return results if same else None
+    return results if same and results.present.all() else None
 
 
 def _can_resume(scene: Scene, folder: Path) -> bool:
