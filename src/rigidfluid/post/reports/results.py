@@ -41,11 +41,11 @@ class Results:
     """A run read back: s states of n bodies, all that were ever there.
 
     ``summary`` as in summary.json, empty where there is none; ``model`` and ``system`` as the run built them; ``time``
-    (s,) [time]; ``bodies`` by column (s, n), not a number where a body is not there, with an infinite gap; ``joints`` by
-    column (s, j), no columns without any; ``energy`` by column (s,); ``series`` the times and files of the fields, empty
-    without a fluid. ``wholes`` of mechanisms by column (s, mechanisms). ``contact_counts`` (s,): how many contacts there
-    are within the range of the laws. ``written``: when its latest row was [s since 1970]. ``goes_on``: whether a process
-    is writing there.
+    (s,) [time]; ``bodies`` by column (s, n), where a body is not there not a number, with an infinite gap; ``joints``
+    by column (s, j), no columns without any; ``energy`` by column (s,); ``series`` the times and files of the fields,
+    empty without a fluid. ``wholes`` of mechanisms by column (s, mechanisms). ``contact_counts`` (s,): how many
+    contacts there are within the range of the laws. ``written``: when its latest row was [s since 1970]. ``goes_on``:
+    whether a process is writing there.
     """
 
     summary: dict[str, Any]

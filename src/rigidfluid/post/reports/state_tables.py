@@ -68,7 +68,7 @@ def _of_whole_states(folder: Path, dimension: int, known: Sequence[str], *, comp
         return rows
     step, body = names["bodies"].index("step"), names["bodies"].index("body")
     energy = checked_rows(table_path(folder, "energy"), names["energy"], complete=False)
-    end = min((row[step] for row in rows if row[body] not in known), default=np.inf)
+    end = min((float(row[step]) for row in rows if row[body] not in known), default=np.inf)
     whole = {row[names["energy"].index("step")] for row in energy}
     return [row for row in rows if row[step] in whole and float(row[step]) < end]
 
