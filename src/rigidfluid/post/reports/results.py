@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from rigidfluid.core.case.load import scene_of_results
+from rigidfluid.core.case.population import Population, assemble_ever
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.model.system import System
@@ -19,7 +20,6 @@ from rigidfluid.core.output.run_files import RUN
 from rigidfluid.core.output.tables import table_path
 from rigidfluid.core.output.vtu import read_pvd
 from rigidfluid.core.output.writer import SERIES, SUMMARY
-from rigidfluid.core.run.population import Population, assemble_ever
 from rigidfluid.core.setup.assemble import assemble
 from rigidfluid.core.setup.description import refuse_description
 from rigidfluid.core.setup.model import Model

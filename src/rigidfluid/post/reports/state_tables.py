@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import takewhile
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.system import System
 from rigidfluid.core.output.history import History
-from rigidfluid.core.output.records import Row, columns, joint_coordinates
+from rigidfluid.core.output.records import Row, columns, joint_coordinates, moving
 from rigidfluid.core.output.summary_file import unreadable
 from rigidfluid.core.output.tables import KINDS, read_header, read_rows, table_path
 
@@ -21,11 +22,14 @@ _STAMP = ("time", "step")
 def table_by_state(folder: Path, name: str, system: System, count: int, *, complete: bool) -> dict[str, FloatArray]:
     """A table by column, each but the names (s, count): every row must be whole, and every state.
 
-    A last row or state that is not whole is dropped, if the table need not be ``complete``.
+    A last row or state that is not whole is dropped, if the table need not be ``complete``; so are states of other
+    bodies, which came or went after the checkpoint.
     """
     path, coordinates = table_path(folder, name), joint_coordinates(system)
     names = columns(system.dimension, coordinates)[name]
     rows = checked_rows(path, names, complete=complete)
+    if name == "bodies" and not complete:
+        rows = _rows_before_change(rows, names.index("step"), names.index("body"), moving(system))
     over = len(rows) % count
     if complete and over:
         raise unreadable(path, f"{len(rows)} rows, no multiple of the {count} that a state has")
@@ -34,16 +38,22 @@ def table_by_state(folder: Path, name: str, system: System, count: int, *, compl
     return {key: values.astype(np.float64).reshape(-1, count) for key, values in table if KINDS.get(key) is not str}
 
 
+def _rows_before_change(rows: list[Row], step: int, body: int, order: Sequence[str]) -> list[Row]:
+    """Rows of states before the first one that has another body than is next in the ``order``."""
+    other = next((row[step] for i, row in enumerate(rows) if row[body] != order[i % len(order)]), None)
+    return rows if other is None else list(takewhile(lambda row: row[step] != other, rows))
+
+
 def changing_bodies(
     folder: Path, dimension: int, known: Sequence[str], *, complete: bool
 ) -> tuple[tuple[str, ...], dict[str, FloatArray]]:
     """Names (n) of those among the ``known`` bodies that are in the table of bodies, and the table by column (s, n).
 
-    Where a body is not there it has no number, but for its gap, which is infinite. States without a row of energies and
+    A body has no numbers at states in which it is not there, and an infinite gap. States without a row of energies and
     those from the first body on that is not known are dropped, if the table need not be ``complete``.
     """
     path = table_path(folder, "bodies")
-    rows = _of_whole_states(folder, dimension, known, complete=complete)
+    rows = _whole_states(folder, dimension, known, complete=complete)
     table = History(dimension, {"bodies": rows}).table("bodies")
     there = set(table["body"].tolist())
     numbers = {name: number for number, name in enumerate(name for name in known if name in there)}
@@ -61,7 +71,7 @@ def changing_bodies(
     return tuple(numbers), found | shared
 
 
-def _of_whole_states(folder: Path, dimension: int, known: Sequence[str], *, complete: bool) -> list[Row]:
+def _whole_states(folder: Path, dimension: int, known: Sequence[str], *, complete: bool) -> list[Row]:
     names = columns(dimension)
     rows = checked_rows(table_path(folder, "bodies"), names["bodies"], complete=complete)
     if complete:
