@@ -36,6 +36,7 @@ REFUSED: dict[str, tuple[str, Tables]] = {
     "a held direction": ("body.0.free", {"body": [ONE | {"free": ["x"], "velocity": [0.1, 0.0]}]}),
     "a mechanism": ("mechanism: .*Leave mechanisms out", {"body": [], "mechanism": [SWIMMER]}),
     "a joint": ("joint: ", {"joint": [{"type": "hinge", "between": ["one", "other"], "at": [0.5, 0.5]}]}),
+    "a sink": ("sink: found bodies that enter or leave", {"sink": [{"on": "bottom"}]}),
     "a wall that slides": ("domain: found the wall 'bottom'", {"boundary": [BELT]}),
     "a film": ("contact.law: found 'lubrication'", {"contact": FILM}),
     "a film, elsewhere": ("interaction.0.law: found 'lubrication'", {"interaction": [FILM]}),

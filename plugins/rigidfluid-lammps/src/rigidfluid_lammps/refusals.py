@@ -10,8 +10,8 @@ def refuse_foreign(scene: Scene, system: System) -> None:
     """Raise CrosscheckError if LAMMPS has no exact counterpart for something in the scene.
 
     Refused are a fluid, shapes other than balls, walls that slide or lie across no axis, motions that are prescribed,
-    articulated bodies, joints, springs, held directions, long-range forces, several laws or one for some contacts
-    alone, and laws that take energy out, but for ``spring-dashpot``.
+    articulated bodies, bodies that enter or leave, joints, springs, held directions, long-range forces, several laws or
+    one for some contacts alone, and laws that take energy out, but for ``spring-dashpot``.
     """
     if system.has_fluid:
         raise CrosscheckError(
@@ -33,6 +33,10 @@ def _refuse_linked_bodies(scene: Scene) -> None:
         raise CrosscheckError("mechanism", found, "bodies that each move by themselves", "Leave mechanisms out.")
     if scene.joint:
         raise CrosscheckError("joint", f"{len(scene.joint)} of them", "bodies without joints", "Leave joints out.")
+    for key, tables in {"source": scene.source, "sink": scene.sink}.items():
+        if tables:
+            found, allowed = "bodies that enter or leave", "the same bodies at all times"
+            raise CrosscheckError(key, found, allowed, "Leave it out.")
 
 
 def _refuse_body(scene: Scene, system: System, number: int) -> None:

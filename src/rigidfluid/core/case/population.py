@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -58,26 +58,41 @@ class Population:
         """One in which the body of this name has left."""
         return replace(self, left=(*self.left, name))
 
+    def known(self, origin: Model) -> tuple[str, ...]:
+        """Names of all bodies that are or were there, in their order."""
+        return (*(body.name for body in origin.bodies), *(str(table["name"]) for table in self.entered))
+
     def names(self, origin: Model) -> tuple[str, ...]:
         """Names of the bodies at present, in their order."""
-        known = (*(body.name for body in origin.bodies), *(str(table["name"]) for table in self.entered))
-        return tuple(name for name in known if name not in self.left)
+        return tuple(name for name in self.known(origin) if name not in self.left)
+
+    def ever(self, origin: Model, names: Container[str]) -> Model:
+        """The model of all bodies of these ``names`` that are or were there, as they started; raises as `model`."""
+        bodies = (*origin.bodies, *self._entered(origin))
+        return origin.with_bodies(tuple(body for body in bodies if body.name in names))
 
     def model(self, origin: Model, now: Present) -> Model:
         """The model at present: bodies of ``origin`` and those that entered, without those that left, in their places
         ``now``; raises SceneError or PluginError for a table that is wrong."""
-        entered = (_body(table, f"body {table.get('name')!r}", origin) for table in self.entered)
-        bodies = [body for body in (*origin.bodies, *entered) if body.name not in self.left]
+        bodies = [body for body in (*origin.bodies, *self._entered(origin)) if body.name not in self.left]
         places = {name: row for row, name in enumerate(now.names)}
         return origin.with_bodies(
             tuple(_moved(body, now, places[body.name]) if body.name in places else body for body in bodies)
         )
+
+    def _entered(self, origin: Model) -> Iterator[RigidBody]:
+        return (_body(table, f"body {table.get('name')!r}", origin) for table in self.entered)
 
 
 def assemble_present(model: Model) -> System:
     """System of a model whose bodies are on their way, and may be nearer to each other than at a start; raises
     SceneError where two overlap."""
     return assemble(model, _check_places)
+
+
+def assemble_ever(model: Model) -> System:
+    """System of a model whose bodies need not have been there together."""
+    return assemble(model, lambda _model, _pose: None)
 
 
 def _check_places(model: Model, pose: Pose) -> None:

@@ -108,6 +108,12 @@ def read_scene(path: Path) -> dict[str, Any]:
         return json_table("scene", load_value(file, "scene", str, ALONE))
 
 
+def read_population(path: Path) -> dict[str, Any]:
+    """Who has entered and left the run that a checkpoint is of; raises OutputError as read_scene does."""
+    with _opened(path) as file:
+        return json_table("population", load_value(file, "population", str, ALONE))
+
+
 @contextmanager
 def _opened(path: Path) -> Iterator[h5py.File]:
     """A checkpoint, of whose bytes each is as it was written."""

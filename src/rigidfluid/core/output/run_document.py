@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from rigidfluid.core.output.checkpoint import read_scene
+from rigidfluid.core.output.checkpoint import read_population, read_scene
 from rigidfluid.core.output.summary_file import read_summary
 from rigidfluid.core.output.writer import CHECKPOINT, SUMMARY
 from rigidfluid.errors import OutputError
@@ -26,3 +26,10 @@ def read_document(folder: Path, needed: Iterable[str] = ("scene", "status")) -> 
         found = error.strerror or str(error)
     remedy = "Give the one that the run wrote, its --out, or run the scene again."
     raise OutputError(str(folder), found, "the folder of a run", remedy)
+
+
+def read_changes(folder: Path, summary: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Who has entered and left a run of this ``summary``, which is empty where it has not ended."""
+    if not summary:
+        return read_population(folder / CHECKPOINT)
+    return dict(summary.get("population", {"entered": [], "left": []}))

@@ -67,8 +67,8 @@ def _earlier(scene: Scene, folder: Path) -> Results | None:
         results = read_results(folder)
     except RigidfluidError:
         return None
-    same = results.summary["status"] == "complete" and tables_now(results.summary["scene"]) == scene.to_dict()
-    return results if same else None
+    same = results.summary.get("status") == "complete" and tables_now(results.summary["scene"]) == scene.to_dict()
+    return results if same and results.present.all() else None
 
 
 def _can_resume(scene: Scene, folder: Path) -> bool:
@@ -78,7 +78,8 @@ def _can_resume(scene: Scene, folder: Path) -> bool:
     except OutputError:
         return False
     whole = all(table.begins(table_path(folder, name)) for name, table in checkpoint.tables.items())
-    return whole and bool(tables_now(json.loads(checkpoint.scene)) == scene.to_dict())
+    changed = any(json.loads(checkpoint.population).values())
+    return whole and not changed and bool(tables_now(json.loads(checkpoint.scene)) == scene.to_dict())
 
 
 def _time_reached(folder: Path) -> float:

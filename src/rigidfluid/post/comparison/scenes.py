@@ -35,7 +35,11 @@ def backend_scenes(path: str | Path, backends: Sequence[str], overrides: Iterabl
     if not isinstance(fluid, Mapping):
         scene_from_dict(tables)  # raises the error of a value in place of a table
     _refuse_unread(fluid, registry, backends)
-    return {part.name: _scene(tables, fluid, part) for part in parts}
+    scenes = {part.name: _scene(tables, fluid, part) for part in parts}
+    for key, given in {"source": scenes[backends[0]].source, "sink": scenes[backends[0]].sink}.items():
+        if given:
+            raise SceneError(key, "bodies that enter or leave", "a comparison of the same bodies", "Leave it out.")
+    return scenes
 
 
 def _backend_classes(registry: Registry, names: Sequence[str]) -> list[type[FluidBackend]]:

@@ -8,9 +8,8 @@ import numpy as np
 from matplotlib.colors import to_rgb
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.model.body import Body
 from rigidfluid.core.output.vtu import read_vtu
-from rigidfluid.post.reports.bodies import rotations
+from rigidfluid.post.reports.bodies import PlacedBody, placed_bodies
 from rigidfluid.post.reports.raster import Grid
 from rigidfluid.post.reports.results import Results
 from rigidfluid.post.reports.scale import Quantity, Scale
@@ -50,18 +49,18 @@ def ground(results: Results, grid: Grid) -> FloatArray:
 
 def draw_bodies(picture: FloatArray, grid: Grid, results: Results, state: int) -> None:
     """Paint the bodies, as the plane cuts them, into a picture (rows, columns, 3)."""
-    places = zip(results.system.bodies, results.quantity("position")[state], rotations(results, state), strict=True)
-    for body, centre, turn in places:
-        _draw(picture, grid, body, centre, turn)
+    for body in placed_bodies(results, state):
+        _draw(picture, grid, body)
 
 
-def _draw(picture: FloatArray, grid: Grid, body: Body, centre: FloatArray, turn: FloatArray) -> None:
+def _draw(picture: FloatArray, grid: Grid, placed: PlacedBody) -> None:
     """Paint one body; only points in the square about it are evaluated."""
-    part = grid.about(centre, body.bounding_radius)
+    body = placed.shape
+    part = grid.about(placed.centre, body.bounding_radius)
     if part is None:
         return
     columns, rows = part
-    own = (grid.points(columns, rows) - centre) @ turn
+    own = (grid.points(columns, rows) - placed.centre) @ placed.turn
     distance = body.signed_distance(own.reshape(-1, own.shape[-1])).reshape(own.shape[:2])
     inside = distance < 0.0
     off = np.linalg.norm(own[..., 1:], axis=-1)

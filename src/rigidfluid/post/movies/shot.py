@@ -48,7 +48,7 @@ def shot_of(results: Results, follow: str | None, window: Window | None, plane: 
     """
     seen = view_plane(results, plane)
     body = 0 if follow is None else results.number_of(follow)
-    through = results.quantity("position")[:, body]
+    through = results.path(body)
     lower, upper = seen.extent(*results.system.domain.extent)
     shift = np.zeros((len(through), 2))
     if follow is not None:

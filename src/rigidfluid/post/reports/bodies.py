@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from contourpy import contour_generator
 
@@ -15,26 +17,39 @@ _GRID = 80
 """Points to each side of the grid about a body in which its outline is found."""
 
 
-def rotations(results: Results, state: int) -> FloatArray:
-    """From the bodies' frames to space, (n, d, d)."""
-    return rotation_matrices(results.quantity("orientation")[state])
+@dataclass(frozen=True)
+class PlacedBody:
+    """Body of a run by its ``number``: ``shape``, ``centre`` (d,), and ``turn`` (d, d) from its frame to space."""
+
+    number: int
+    shape: Body
+    centre: FloatArray
+    turn: FloatArray
+
+
+def placed_bodies(results: Results, state: int) -> list[PlacedBody]:
+    """The bodies that are there at a state."""
+    there = np.flatnonzero(results.present[state])
+    centres = results.quantity("position")[state, there]
+    turns = rotation_matrices(results.quantity("orientation")[state, there])
+    bodies = results.system.bodies
+    return [PlacedBody(int(i), bodies[i], *place) for i, *place in zip(there, centres, turns, strict=True)]
 
 
 def cuts(results: Results, state: int, plane: ViewPlane, through: FloatArray) -> list[FloatArray]:
     """The curves (K, 2) in which the plane through a point (d,) cuts bodies, to the right and up."""
-    turns = rotations(results, state)
-    places = zip(results.system.bodies, results.quantity("position")[state], turns, strict=True)
-    return [curve for body, centre, turn in places for curve in cut(body, centre, turn, plane, through)]
+    return [curve for body in placed_bodies(results, state) for curve in cut(body, plane, through)]
 
 
-def cut(body: Body, centre: FloatArray, turn: FloatArray, plane: ViewPlane, through: FloatArray) -> list[FloatArray]:
+def cut(placed: PlacedBody, plane: ViewPlane, through: FloatArray) -> list[FloatArray]:
     """The curves (K, 2) in which the plane through a point (d,) cuts one body."""
+    body, centre = placed.shape, placed.centre
     off = through - centre
     foot = off - plane.right * (plane.right @ off) - plane.up * (plane.up @ off)
     if np.linalg.norm(foot) >= body.bounding_radius:
         return []
     line = np.linspace(-1.02, 1.02, _GRID) * body.bounding_radius
     points = foot + line[None, :, None] * plane.right + line[:, None, None] * plane.up
-    distance = body.signed_distance((points @ turn).reshape(-1, len(centre))).reshape(_GRID, _GRID)
+    distance = body.signed_distance((points @ placed.turn).reshape(-1, len(centre))).reshape(_GRID, _GRID)
     lines = contour_generator(line, line, distance).lines(0.0)
     return [np.asarray(curve) + plane.flat(centre) for curve in lines]

@@ -11,7 +11,7 @@ from scipy.spatial import ConvexHull
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.model.body import Body
-from rigidfluid.post.reports.bodies import rotations
+from rigidfluid.post.reports.bodies import placed_bodies
 from rigidfluid.post.reports.raster import Grid, Sampling
 from rigidfluid.post.reports.results import Results
 
@@ -80,13 +80,13 @@ class Canvas:
 
     def paint_bodies(self, shells: list[Shell], results: Results, state: int, colour: str, stripe: str) -> None:
         """Paint the bodies lit from the upper left, each with a ``stripe`` along its x-axis."""
-        plane, position = self.grid.plane, results.quantity("position")[state]
-        places = zip(results.system.bodies, shells, position, rotations(results, state), strict=True)
+        plane = self.grid.plane
         observer = np.stack([plane.right, plane.up, plane.normal])
-        for body, shell, centre, turn in places:
-            own = shell.triangles[..., :2] / body.bounding_radius
+        for body in placed_bodies(results, state):
+            shell, turn = shells[body.number], body.turn
+            own = shell.triangles[..., :2] / body.shape.bounding_radius
             values = np.concatenate([own, shell.normals @ (observer @ turn).T], axis=2)
-            self.paint(shell.triangles @ turn.T + centre, values, lambda at: _lit(at, colour, stripe))
+            self.paint(shell.triangles @ turn.T + body.centre, values, lambda at: _lit(at, colour, stripe))
 
     def shows(self, points: FloatArray, slack: float) -> BoolArray:
         """Tell whether nothing that is painted hides each of ``points`` (…, 3) by more than ``slack`` [length]."""

@@ -34,7 +34,7 @@ class Reference:
 
 @dataclass(frozen=True)
 class Figures:
-    """Coefficients of a body in the second half of the time, over whole periods if there are any.
+    """Coefficients of a body in the second half of its time, over whole periods if there are any.
 
     Mean ``drag``, mean ``lift``, half of the lift's range (``swing``), and the ``strouhal`` number f D/U, None where
     there is no period; ``by`` what it is measured, lift or path.
@@ -57,7 +57,7 @@ def reference(results: Results) -> Reference | None:
     if stream is not None:
         words = "the greatest mean velocity of an inlet"
         return Reference(float(np.linalg.norm(stream)), _axes(results, stream), words)
-    towed = results.quantity("velocity")[:, results.system.prescribed].reshape(-1, results.system.dimension)
+    towed = results.quantity("velocity")[results.present & results.system.prescribed]
     speed = np.linalg.norm(towed, axis=1)
     if not speed.any():
         return None
@@ -85,15 +85,22 @@ def figures(results: Results, by: Reference) -> Iterator[Figures]:
     """Coefficients of each body."""
     found, time = coefficients(results, by)[1:], results.time[1:]
     across = results.quantity("position")[1:] @ by.axes[1]
-    scale = np.abs(found[late(time), :, 0]).mean(axis=0)
-    for i, width in enumerate(diameters(results)):
-        by_lift = frequency(time, found[:, i, 1], _LEAST_LIFT * scale[i])
-        rate = by_lift or frequency(time, across[:, i], _LEAST_WAY * width)
-        chosen = late(time) if rate is None else late_periods(time, rate)
-        drag, lift = (_mean(time[chosen], found[chosen, i, k]) for k in (0, 1))
-        strouhal = None if rate is None else rate * width / by.speed
-        swing = 0.5 * float(np.ptp(found[chosen, i, 1]))
-        yield Figures(drag, lift, swing, strouhal, "path" if by_lift is None else "lift")
+    for i, (width, there) in enumerate(zip(diameters(results), results.present[1:].T, strict=True)):
+        yield _figures(time[there], found[there, i], across[there, i], width, by)
+
+
+def _figures(time: FloatArray, found: FloatArray, across: FloatArray, width: float, by: Reference) -> Figures:
+    """Coefficients from those ``found`` (s, d) for a body of this diameter, and its way ``across`` (s,) the flow."""
+    if not len(time):
+        return Figures(np.nan, np.nan, np.nan, None, "path")
+    scale = np.abs(found[late(time), 0]).mean()
+    by_lift = frequency(time, found[:, 1], _LEAST_LIFT * scale)
+    rate = by_lift or frequency(time, across, _LEAST_WAY * width)
+    chosen = late(time) if rate is None else late_periods(time, rate)
+    drag, lift = (_mean(time[chosen], found[chosen, k]) for k in (0, 1))
+    strouhal = None if rate is None else rate * width / by.speed
+    swing = 0.5 * float(np.ptp(found[chosen, 1]))
+    return Figures(drag, lift, swing, strouhal, "path" if by_lift is None else "lift")
 
 
 def _mean(time: FloatArray, values: FloatArray) -> float:

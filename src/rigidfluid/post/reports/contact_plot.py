@@ -33,5 +33,5 @@ def _largest_force(results: Results) -> tuple[FloatArray, str]:
     force = np.linalg.norm(results.quantity("contact_force"), axis=2)
     weight = np.linalg.norm(results.system.weight, axis=1)
     if not weight.all():
-        return np.asarray(force.max(axis=1)), "largest\ncontact force [force]"
-    return np.asarray((force / weight).max(axis=1)), "largest contact force\nover the weight"
+        return np.asarray(np.nanmax(force, axis=1)), "largest\ncontact force [force]"
+    return np.asarray(np.nanmax(force / weight, axis=1)), "largest contact force\nover the weight"

@@ -65,8 +65,9 @@ def speed_plot(results: Results) -> Figure:
     for axes, (whose, values) in zip(panels[1:], reynolds.items(), strict=True):
         draw_bodies(axes, results.time, values, results.names)
         axes.set_ylabel(f"Reynolds number\ndensity of the {whose}")
-        axes.axhline(values.max(), color=BLACK, linewidth=0.8, linestyle=":")
-        axes.annotate(f"highest {values.max():.4g}", (results.time[-1], values.max()), (0, -4),
+        highest = np.nanmax(values)
+        axes.axhline(highest, color=BLACK, linewidth=0.8, linestyle=":")
+        axes.annotate(f"highest {highest:.4g}", (results.time[-1], highest), (0, -4),
                       textcoords="offset points", ha="right", va="top", fontsize=9)  # fmt: skip
     return figure
 

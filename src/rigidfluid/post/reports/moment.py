@@ -20,7 +20,8 @@ MOMENTS = 4
 @dataclass(frozen=True)
 class Moment:
     """The fields' ``section`` at one output time; the ``centre`` (2,) of the body looked at, to the right and up, the
-    ``width`` of the ball around it and its ``gap`` [length]; and ``outlines`` of bodies in the plane, (K, 2) each."""
+    ``width`` of the ball around it and its ``gap`` [length]; and ``outlines`` of bodies in the plane, (K, 2) each.
+    ``has_body``: whether that body is there."""
 
     time: float
     section: Section
@@ -28,6 +29,7 @@ class Moment:
     width: float
     gap: float
     outlines: tuple[FloatArray, ...] = ()
+    has_body: bool = True
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,7 @@ def moment(results: Results, output: int, plane: ViewPlane, body: int) -> Moment
     """Section, gap and outlines at an output time in the plane, in 3D through the centre of a body; both by number."""
     time, path = results.series[output]
     state = results.state_at(time)
-    centre = results.quantity("position")[state, body]
+    centre = results.path(body)[state]
     return Moment(
         time=time,
         section=Section.cut(read_vtu(path), plane, centre),
@@ -72,6 +74,7 @@ def moment(results: Results, output: int, plane: ViewPlane, body: int) -> Moment
         width=2.0 * results.system.bodies[body].bounding_radius,
         gap=float(results.bodies["gap"][state, body]),
         outlines=tuple(cuts(results, state, plane, centre)),
+        has_body=bool(results.present[state, body]),
     )
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.surface import Surface
-from rigidfluid.post.reports.bodies import cut, rotations
+from rigidfluid.post.reports.bodies import cut, placed_bodies
 from rigidfluid.post.reports.results import Results
 from rigidfluid.post.reports.view_plane import ViewPlane
 
@@ -35,19 +35,21 @@ class _Placed:
 
 def gap_middle(results: Results, state: int, number: int, plane: ViewPlane) -> FloatArray | None:
     """Middle (2,) of the shortest line from a body to another surface, to the right and up; None where the line does
-    not lie in the ``plane`` through the body's centre.
+    not lie in the ``plane`` through the body's centre, or the body is not there.
 
     The other surface is that whose distance agrees best with the table's gap, which is none to surfaces without wall.
     """
-    system, centres, turns = results.system, results.quantity("position")[state], rotations(results, state)
-    body, centre, turn = system.bodies[number], centres[number], turns[number]
-    curves = [curve[:-1] for curve in cut(body, centre, turn, plane, centre)]  # closed: the last point is the first
+    bodies = {body.number: body for body in placed_bodies(results, state)}
+    body = bodies.pop(number, None)
+    if body is None:
+        return None
+    centre = body.centre
+    curves = [curve[:-1] for curve in cut(body, plane, centre)]  # closed: the last point is the first
     outline = plane.lifted(np.concatenate(curves), centre)
-    own = _Placed(body, centre, turn)
-    others = [_Placed(*one) for one in zip(system.bodies, centres, turns, strict=True)]
-    others[number : number + 1] = []
+    own = _Placed(body.shape, centre, body.turn)
+    others = [_Placed(other.shape, other.centre, other.turn) for other in bodies.values()]
     still = np.zeros(len(centre)), np.eye(len(centre))
-    others += [_Placed(piece.shape, *still) for piece in system.domain.pieces]
+    others += [_Placed(piece.shape, *still) for piece in results.system.domain.pieces]
     gap = float(results.bodies["gap"][state, number])
     lines = [_shortest_line(own, other, outline) for other in others]
     line = min(lines, key=lambda line: abs(float(np.linalg.norm(line[1] - line[0])) - gap))

@@ -7,6 +7,8 @@ from datetime import UTC, datetime
 from html import escape
 from typing import Any
 
+import numpy as np
+
 from rigidfluid.core.output.energy_account import per_cent
 from rigidfluid.core.output.verdict import verdict
 from rigidfluid.core.scene.scene_text import scene_text
@@ -62,6 +64,7 @@ def page(
         f"<p>{escape(_status(results))} Units are those of the scene; in 2D all is per unit depth.</p>",
         *(f'<p class="note">{escape(note)}</p>' for note in (*told, *notes)),
         *([table(_figures(summary)), *_cycles(summary.get("cycles", {}))] if summary else ()),
+        *_changes(results),
         *_coefficients(coefficients),
         "<h2>Pictures</h2>",
         *pictures,
@@ -119,6 +122,21 @@ def _cycles(mechanisms: Mapping[str, Any]) -> Iterator[str]:
         spins = ("about x [rad]", "about y [rad]", "about z [rad]") if three else ("turned [rad]",)
         rows = enumerate(zip(moved, turned, strict=True), start=1)
         yield grid((*head, *spins), [(number, *place, *(turn if three else (turn,))) for number, (place, turn) in rows])
+
+
+def _changes(results: Results) -> Iterator[str]:
+    """A table of the first bodies that entered or left."""
+    time, end, rows = results.time, len(results.time) - 1, []
+    for name, there in zip(results.names, results.present.T, strict=True):
+        if not there.all():
+            first, last = np.flatnonzero(there)[[0, -1]]
+            entered = float(time[first - 1]) if first > 0 else ""
+            rows.append((name, entered, float(time[last]) if last < end else ""))
+    if rows:
+        yield "<h2>Bodies that entered or left</h2>"
+        yield grid(("body", "entered [time]", "left [time]"), rows[:_MOST_BODIES])
+        if len(rows) > _MOST_BODIES:
+            yield f"<p>And {len(rows) - _MOST_BODIES} more bodies, in bodies.csv.</p>"
 
 
 def _coefficients(bodies: Sequence[tuple[str, Figures]]) -> Iterator[str]:

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.post.reports.bodies import cut, rotations
+from rigidfluid.post.reports.bodies import cut, placed_bodies
 from rigidfluid.post.reports.curves import MOST_LINES
 from rigidfluid.post.reports.plane import distance_grid
 from rigidfluid.post.reports.results import Results
@@ -43,10 +43,9 @@ def draw_paths(axes: Axes, results: Results, plane: ViewPlane) -> None:
 
 def _draw_bodies(axes: Axes, results: Results, plane: ViewPlane, state: int, *, filled: bool) -> None:
     many = len(results.names) > MOST_LINES
-    places = zip(results.system.bodies, results.quantity("position")[state], rotations(results, state), strict=True)
-    for i, (body, centre, turn) in enumerate(places):
-        colour = BLUE if many else PALETTE[i]
-        for curve in cut(body, centre, turn, plane, centre):
+    for body in placed_bodies(results, state):
+        colour = BLUE if many else PALETTE[body.number]
+        for curve in cut(body, plane, body.centre):
             _draw_outline(axes, curve, colour, filled=filled)
 
 

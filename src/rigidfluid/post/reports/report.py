@@ -101,7 +101,9 @@ def _flow_pictures(results: Results, plane: ViewPlane, body: int | None) -> Iter
             raster,
         )
     whose = "the body that came nearest to another surface" if body is None else results.names[body]
-    yield "mesh", f"Mesh about {whose}.{where}", mesh_picture(shown, speed), raster
+    about = [moment for moment in shown if moment.has_body]
+    if about:
+        yield "mesh", f"Mesh about {whose}.{where}", mesh_picture(about, speed), raster
     output, nearest = narrowest(results, body)
     middle = gap_middle(results, results.state_at(results.series[output][0]), nearest, plane)
     if middle is not None:

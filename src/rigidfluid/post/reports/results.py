@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -10,22 +9,22 @@ from typing import Any
 import numpy as np
 
 from rigidfluid.core.case.load import scene_of_results
+from rigidfluid.core.case.population import Population, assemble_ever
 from rigidfluid.core.case.scene_model import model_of
-from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.model.system import System
-from rigidfluid.core.output.history import History
-from rigidfluid.core.output.records import Row, columns, joint_coordinates, moving, quantity_columns
+from rigidfluid.core.output.records import columns, moving, quantity_columns
 from rigidfluid.core.output.results_folder import is_being_written
-from rigidfluid.core.output.run_document import read_document
+from rigidfluid.core.output.run_document import read_changes, read_document
 from rigidfluid.core.output.run_files import RUN
-from rigidfluid.core.output.summary_file import unreadable
-from rigidfluid.core.output.tables import KINDS, read_header, read_rows, table_path
+from rigidfluid.core.output.tables import table_path
 from rigidfluid.core.output.vtu import read_pvd
 from rigidfluid.core.output.writer import SERIES, SUMMARY
 from rigidfluid.core.setup.assemble import assemble
 from rigidfluid.core.setup.description import refuse_description
 from rigidfluid.core.setup.model import Model
 from rigidfluid.errors import OutputError
+from rigidfluid.post.reports.state_tables import changing_bodies, checked_rows, table_by_state
 from rigidfluid.post.reports.units import Units
 
 NEEDED = (
@@ -39,13 +38,14 @@ NEEDED = (
 
 @dataclass(frozen=True)
 class Results:
-    """A run read back: s states of n bodies.
+    """A run read back: s states of n bodies, all that were ever there.
 
     ``summary`` as in summary.json, empty where there is none; ``model`` and ``system`` as the run built them; ``time``
-    (s,) [time]; ``bodies`` by column (s, n); ``joints`` by column (s, j), no columns without any; ``energy`` by column
-    (s,); ``series`` the times and files of the fields, empty without a fluid. ``wholes`` of mechanisms by column
-    (s, mechanisms). ``contact_counts`` (s,): how many contacts there are within the range of the laws.
-    ``written``: when its latest row was [s since 1970]. ``goes_on``: whether a process is writing there.
+    (s,) [time]; ``bodies`` by column (s, n), where a body is not there not a number, with an infinite gap; ``joints``
+    by column (s, j), no columns without any; ``energy`` by column (s,); ``series`` the times and files of the fields,
+    empty without a fluid. ``wholes`` of mechanisms by column (s, mechanisms). ``contact_counts`` (s,): how many
+    contacts there are within the range of the laws. ``written``: when its latest row was [s since 1970]. ``goes_on``:
+    whether a process is writing there.
     """
 
     summary: dict[str, Any]
@@ -65,6 +65,11 @@ class Results:
     def names(self) -> tuple[str, ...]:
         """Names of the bodies."""
         return self.system.surfaces[: len(self.system.bodies)]
+
+    @property
+    def present(self) -> BoolArray:
+        """Which bodies are there, at each state (s, n)."""
+        return np.isfinite(self.bodies["x"])
 
     @property
     def units(self) -> Units:
@@ -103,6 +108,12 @@ class Results:
         """One of the `quantity_columns` of all bodies, its components last, (s, n, d), (s, n, k) or (s, n, q)."""
         return np.stack([self.bodies[column] for column in quantity_columns(self.system.dimension)[name]], axis=-1)
 
+    def path(self, body: int) -> FloatArray:
+        """Positions of a body by number (s, d): its first before it enters, its last after it has left [length]."""
+        there = np.flatnonzero(self.present[:, body])
+        state = np.clip(np.arange(len(self.time)), there[0], there[-1])
+        return np.asarray(self.quantity("position")[state, body])
+
 
 def read_results(folder: Path, *, motion_only: bool = False, model: Model | None = None) -> Results:
     """Read a run's folder, all but the fields themselves, which are read one by one.
@@ -113,16 +124,22 @@ def read_results(folder: Path, *, motion_only: bool = False, model: Model | None
     without one of its plug-ins.
     """
     summary, told = read_document(folder, NEEDED)
-    complete = bool(summary)
+    complete, changes = bool(summary), read_changes(folder, summary)
     series = read_pvd(folder / SERIES) if (folder / SERIES).exists() else ()  # before tables, which may grow
     model = _model(told, folder) if model is None else _same(model, told, folder)
-    system = assemble(model)
+    population = Population.from_dict(changes)
+    tables: dict[str, dict[str, FloatArray]] = {}
+    if population:
+        names, tables["bodies"] = changing_bodies(folder, model.dimension, population.known(model), complete=complete)
+        system = assemble_ever(model := population.ever(model, names))
+    else:
+        system = assemble(model)
     count, links = len(system.bodies), len(_joint_names(system))
     wanted = {"bodies": len(moving(system))} | ({} if motion_only else {"energy": 1, "joints": links})
-    tables = {
-        name: _table_by_state(folder, name, system, each, complete=complete)
+    tables |= {
+        name: table_by_state(folder, name, system, each, complete=complete)
         for name, each in wanted.items()
-        if each > 0
+        if each > 0 and name not in tables
     }
     whole = min(len(table["step"]) for table in tables.values())
     if not complete:
@@ -158,26 +175,10 @@ def _model(tables: dict[str, Any], folder: Path) -> Model:
     return model_of(scene_of_results(tables))
 
 
-def _table_by_state(folder: Path, name: str, system: System, count: int, *, complete: bool) -> dict[str, FloatArray]:
-    """A table by column, each but the names (s, count): every row must be whole, and every state.
-
-    A last row or state that is not whole is dropped, if the table need not be ``complete``.
-    """
-    path, coordinates = table_path(folder, name), joint_coordinates(system)
-    names = columns(system.dimension, coordinates)[name]
-    rows = _rows(path, names, complete=complete)
-    over = len(rows) % count
-    if complete and over:
-        raise unreadable(path, f"{len(rows)} rows, no multiple of the {count} that a state has")
-    history = History(system.dimension, {name: rows[: len(rows) - over]}, coordinates=coordinates)
-    table = history.table(name).items()
-    return {key: values.astype(np.float64).reshape(-1, count) for key, values in table if KINDS.get(key) is not str}
-
-
 def _contact_counts(folder: Path, dimension: int, steps: FloatArray) -> FloatArray:
     """Count of rows in the table of contacts for each of the ``steps`` (s,), which rise; there may be later ones."""
     path, names = folder / "contacts.csv", columns(dimension)["contacts"]
-    rows = _rows(path, names, may_be_empty=True, complete=(folder / SUMMARY).exists())
+    rows = checked_rows(path, names, may_be_empty=True, complete=(folder / SUMMARY).exists())
     at_contacts = np.array([row[names.index("step")] for row in rows], dtype=float)
     known = np.searchsorted(steps, at_contacts[at_contacts <= steps[-1]])
     return np.bincount(known, minlength=len(steps)).astype(float)
@@ -186,23 +187,3 @@ def _contact_counts(folder: Path, dimension: int, steps: FloatArray) -> FloatArr
 def _joint_names(system: System) -> tuple[str, ...]:
     force = system.joints.unloaded(system.motions.pose).force
     return tuple(one.name for one in system.joints.readings(system.pose, system.twist, 0.0, force))
-
-
-def _rows(path: Path, names: Sequence[str], *, may_be_empty: bool = False, complete: bool = True) -> list[Row]:
-    try:
-        header = read_header(path)
-        rows = read_rows(path, complete=complete)
-    except FileNotFoundError:
-        raise unreadable(path, "no file") from None
-    except OSError as error:
-        raise unreadable(path, error.strerror) from error
-    except UnicodeDecodeError as error:
-        raise unreadable(path, f"no text ({error})") from error
-    except ValueError as error:
-        raise unreadable(path, str(error)) from error
-    if tuple(header) != tuple(names):
-        raise unreadable(path, f"the columns {', '.join(header) or 'of no header'}")
-    torn = next((number for number, row in enumerate(rows, start=2) if len(row) != len(names)), None)
-    if torn is not None or not (rows or may_be_empty):
-        raise unreadable(path, "no rows" if torn is None else f"a torn line {torn}")
-    return rows

@@ -16,19 +16,19 @@ _TURNED = 0.01
 
 
 def turned(results: Results) -> FloatArray:
-    """How far each body has turned since the start (s, n) [rad]: in 2D with sign and whole turns, in 3D the angle of
-    the rotation that leads there, from 0 to π."""
-    if results.system.dimension == 2:
-        angle = results.bodies["angle"]
-        return np.asarray(angle - angle[0])
+    """How far each body has turned since its first state (s, n) [rad]: in 2D with sign and whole turns, in 3D the angle
+    of the rotation that leads there, from 0 to π."""
     now = results.quantity("orientation")
-    cosine = np.abs(np.sum(now * now[0], axis=-1))
+    first = now[results.present.argmax(axis=0), np.arange(len(results.names))]
+    if results.system.dimension == 2:
+        return np.asarray((now - first)[..., 0])
+    cosine = np.abs(np.sum(now * first, axis=-1))
     return np.asarray(2.0 * np.arccos(np.minimum(cosine, 1.0)))
 
 
 def turning(results: Results) -> BoolArray:
     """Which bodies (n,) have their rotation shown: those that turn, and others that are no balls if any does."""
-    far = np.abs(turned(results)).max(axis=0) >= _TURNED
+    far = np.nanmax(np.abs(turned(results)), axis=0) >= _TURNED
     no_balls = ~results.system.balls
     return np.asarray((far | no_balls) & far.any())
 

@@ -32,7 +32,7 @@ def shared_scales(
     chosen = np.unique(np.linspace(0, len(there) - 1, _SAMPLED).round().astype(int))
     found: list[list[tuple[FloatArray, FloatArray]]] = [[] for _ in quantities]
     for time, path in (there[i] for i in chosen):
-        through = results.quantity("position")[results.state_at(time), follow or 0]
+        through = results.path(follow or 0)[results.state_at(time)]
         section = Section.cut(read_vtu(path), plane, through)
         for quantity, spreads in zip(quantities, found, strict=True):
             spreads.append(section.spread(quantity))

@@ -92,8 +92,9 @@ def draw_space(axes: Axes, canvas: Canvas, results: Results, state: int, shells:
         _draw_visible(axes, canvas, (1.0 - share) * start + share * end, 0.0, (BLACK, 0.5))
     slack = _SLACK * float(np.linalg.norm(np.ptp(box, axis=0)))
     if len(results.system.bodies) <= MOST_LINES:
-        for path in results.quantity("position")[: state + 1].swapaxes(0, 1):
-            _draw_visible(axes, canvas, path, slack, (VERMILLION, 0.8))
+        position, present = results.quantity("position")[: state + 1], results.present[: state + 1]
+        for path, there in zip(position.swapaxes(0, 1), present.T, strict=True):
+            _draw_visible(axes, canvas, path[there], slack, (VERMILLION, 0.8))
     _name_edges(axes, canvas.grid, edges)
 
 

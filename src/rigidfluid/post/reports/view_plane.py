@@ -117,7 +117,7 @@ def _across(results: Results, along: FloatArray) -> FloatArray:
     moves = spread[-1] >= _least_spread(results)
     if moves and spread[-2] < _FLAT * spread[-1]:
         return _snapped(directions[:, -1])
-    length = np.ptp(results.quantity("position"), axis=(0, 1)) if moves else results.system.domain.size
+    length = np.ptp(_positions(results), axis=0) if moves else results.system.domain.size
     free = np.linalg.norm(across, axis=1)
     axis = int(np.argmax(np.where(free > 0.5, length, -1.0)))
     return np.asarray(across[axis] / free[axis])
@@ -125,10 +125,15 @@ def _across(results: Results, along: FloatArray) -> FloatArray:
 
 def _spread(results: Results, across: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Standard deviations of positions, projected by ``across`` (3, 3), from small to large, and their directions."""
-    seen = results.quantity("position").reshape(-1, 3) @ across
+    seen = _positions(results) @ across
     away = seen - seen.mean(axis=0)
     values, directions = np.linalg.eigh(away.T @ away / len(away))
     return np.sqrt(np.maximum(values, 0.0)), directions
+
+
+def _positions(results: Results) -> FloatArray:
+    """Positions of all bodies at all states in which they are there, (N, 3)."""
+    return np.asarray(results.quantity("position")[results.present])
 
 
 def _least_spread(results: Results) -> float:

@@ -76,7 +76,7 @@ class Samples:
 def samples_of(results: Results, since: float | None, until: float | None) -> Samples:
     """Samples of a run from one time to another; from a third of it on if not given, when most starts are forgotten.
 
-    Raises OutputError if there are too few states or bodies.
+    Raises OutputError if there are too few states or bodies, or a body enters or leaves meanwhile.
     """
     start, end = float(results.time[0]), float(results.time[-1])
     since, until = start + (end - start) / 3.0 if since is None else since, end if until is None else until
@@ -86,7 +86,13 @@ def samples_of(results: Results, since: float | None, until: float | None) -> Sa
     inside = int(np.sum((results.time >= since) & (results.time <= until)))
     wanted = np.linspace(since, min(until, end), max(LEAST, min(SAMPLES, inside)))
     rows = np.unique([results.state_at(time) for time in wanted])
-    moving = np.flatnonzero(~results.system.prescribed)
+    present = results.present[rows[0] : rows[-1] + 1]
+    moving = np.flatnonzero(~results.system.prescribed & present.any(axis=0))
+    changing = [results.names[body] for body in moving if not present[:, body].all()]
+    if changing:
+        remedy = "Choose times between which no body does, by --since and --until."
+        found = f"from {since:g} to {until:g} bodies that enter or leave: {', '.join(changing[:20])}"
+        raise OutputError("statistics", found, "the same bodies at all times", remedy)
     if len(rows) < LEAST or len(moving) < LEAST:
         found = f"{len(rows)} states and {len(moving)} bodies that move"
         remedy = "Choose a longer time, or a run of more bodies."

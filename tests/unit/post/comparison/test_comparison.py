@@ -17,11 +17,12 @@ from scenes import dry_tables
 from typer.testing import CliRunner, Result
 
 import rigidfluid
+from rigidfluid.api import Simulation
 from rigidfluid.cli import app
 from rigidfluid.core.case.system import build_system
 from rigidfluid.core.output.records import columns
 from rigidfluid.core.scene.scene_text import scene_text
-from rigidfluid.errors import RigidfluidError
+from rigidfluid.errors import RigidfluidError, SceneError
 from rigidfluid.post.comparison import child, compare, runs
 from rigidfluid.post.comparison.differences import interpolated, pair
 from rigidfluid.post.comparison.figures import difference_plot, most_different
@@ -434,6 +435,28 @@ def test_interrupted_runs_are_resumed(started: list[tuple[str, bool]], tmp_path:
     assert taken_up()
     assert not taken_up("body.0.density=1.5")
     assert not taken_up(fresh=True)
+
+
+@pytest.mark.parametrize("complete", [True, False])
+def test_runs_of_other_bodies_are_neither_kept_nor_resumed(
+    complete: bool, started: list[tuple[str, bool]], tmp_path: Path
+) -> None:
+    scene = backend_scenes(BOUNCE, ["dry", "pushed"], SHORT)["dry"]
+    run = Simulation(scene, tmp_path / "dry")
+    run.go(2e-5)
+    run.remove("left_disk")
+    run.go()
+    if complete:
+        run.finish("complete")
+    run.close()
+    made = runs.backend_run("dry", scene, tmp_path)
+    assert (made.kept, started) == (False, [("dry", False)])
+
+
+def test_bodies_that_leave_are_not_compared(tmp_path: Path) -> None:
+    (tmp_path / "sink.toml").write_text(BOUNCE.read_text() + '\n[[sink]]\non = "bottom"\n')
+    with pytest.raises(SceneError, match="sink: found bodies that enter or leave"):
+        backend_scenes(tmp_path / "sink.toml", ["dry", "pushed"])
 
 
 def test_one_failure_leaves_the_others(started: list[tuple[str, bool]], tmp_path: Path) -> None:
