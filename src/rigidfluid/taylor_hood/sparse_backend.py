@@ -43,6 +43,7 @@ class SparseBackend(TaylorHoodBackend):
     Options: ClassVar[type[PartOptions]] = SparseOptions
     oblique_faces: ClassVar[bool] = True
     periodic_faces: ClassVar[bool] = True
+    held_fluxes: ClassVar[bool] = True
 
     options: SparseOptions
 

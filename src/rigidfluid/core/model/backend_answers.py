@@ -88,6 +88,12 @@ def probes(answer: Any, part: Any, fluid: Any, mesh: Any, points: Any) -> None:
     refuse_other_rows(answer[1], points.shape[:1], "pressure", shorter=True)
 
 
+def driving(answer: Any, part: Any, fluid: Any, mesh: Any) -> None:
+    """Refuse what are no flux and drop of pressure of each periodic pair."""
+    pairs = [condition for condition in part.problem.conditions if condition.image is not None]
+    refuse_other_rows(answer, (len(pairs) if part.held_fluxes else 0, 2), shorter=True)
+
+
 def _refuse_negative(energy: float, name: str) -> None:
     if energy < 0.0:
         raise Wrong(f"{name} {energy}", "an energy of 0 or more")

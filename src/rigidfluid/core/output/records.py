@@ -38,6 +38,7 @@ def columns(dimension: int, coordinates: Iterable[str] = COORDINATES) -> dict[st
         "energy": ("time", "step", *LEDGER_COLUMNS),
         "steps": ("time", "step", "size", "error", "unknowns", "remeshes", "cells", "quality"),
         "probes": ("time", "step", "probe", *position, *velocity, "pressure"),
+        "driving": ("time", "step", "surface", "flux", "pressure_drop"),
     }
 
 
@@ -83,6 +84,7 @@ def records(
         "energy": [(*stamp, *(getattr(state.ledger, name) for name in LEDGER_COLUMNS))],
         "steps": [] if cost is None else [_step_row(system, state, stamp, cost)],
         "probes": list(_probe_rows(system, probes, state, stamp)),
+        "driving": list(_driving_rows(system, state, stamp)),
     }
 
 
@@ -152,3 +154,13 @@ def _probe_rows(system: System, probes: FloatArray, state: State, stamp: Row) ->
         velocity[outside], pressure[outside] = np.nan, np.nan
     for i, point in enumerate(probes):
         yield (*stamp, i, *point.tolist(), *velocity[i].tolist(), float(pressure[i]))
+
+
+def _driving_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:
+    """A row for each pair of periodic surfaces, by the name of the first."""
+    if system.fluid is None or count_cells(state.mesh) == 0:
+        return
+    names = [condition.name for condition in system.fluid.conditions if condition.image is not None]
+    if names and system.backend.held_fluxes:
+        for name, row in zip(names, system.backend.driving(state.fluid, state.mesh).tolist(), strict=True):
+            yield (*stamp, name, *row)

@@ -20,6 +20,7 @@ TABLES = {
     "energy": "the energy balance",
     "steps": "size, error with `time.tolerance`, unknowns, new meshes",
     "probes": "the fluid at the points of `output.probes`",
+    "driving": "flux and drop of pressure of each pair of periodic surfaces",
 }
 """Names of a run's tables, and what is in each."""
 

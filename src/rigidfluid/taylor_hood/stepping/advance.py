@@ -15,8 +15,8 @@ from rigidfluid.taylor_hood.elements.container import container_velocity
 from rigidfluid.taylor_hood.system.boundary import FaceFlow, pressure_load
 from rigidfluid.taylor_hood.system.coupled import CoupledMatrix, CoupledSystem, Solution, masses_alone
 from rigidfluid.taylor_hood.system.discretisation import Discretisation, dissipation, kinetic_energy, stress_power
+from rigidfluid.taylor_hood.system.driving import solve_driven
 from rigidfluid.taylor_hood.system.grad_div import grad_div_dissipation
-from rigidfluid.taylor_hood.system.links import solve_linked
 
 _TURNING_TOLERANCE = 1e-3
 """Relative residual of the solve that corrects the advection near bodies which contacts turn around [1]."""
@@ -52,10 +52,11 @@ def advance(equations: Equations, tolerance: float, attempt: FluidState | None) 
         guess = step.kinematics.motion_twist(attempt["twist"])
         velocity, pressure = attempt["velocity"], attempt["pressure"]
         system = replace(system, velocity=velocity, pressure=pressure, twist=guess, again=True)
-    solution, link_force = solve_linked(discretisation, system, step.links, tolerance)
+    driven = solve_driven(discretisation, system, step.links, step.time, tolerance)
+    solution, on_faces = driven.solution, on_faces + driven.load
     if solution.jump_load is not None:
         on_faces = on_faces + solution.jump_load
-    return _measured(equations, solution, on_faces, link_force)
+    return _measured(equations, solution, on_faces, driven.link_force)
 
 
 def _measured(equations: Equations, solution: Solution, on_faces: FloatArray, link_force: FloatArray) -> Advance:
