@@ -38,6 +38,7 @@ PICTURES = {
     "insertion_2d": Shown("streamlines", (0.1,)),
     "insertion_3d": Shown("space", (0.1,)),
     "many_bodies_3d": Shown("space", (0.6,)),
+    "periodic_array": Shown("streamlines", (0.01,)),
     "periodic_channel": Shown("streamlines", (0.5, 2.5)),
     "rebound": Shown("vorticity", (0.006, 0.012, 0.018, 0.03), settings=("output.every=0.006",)),
     "settling_cylinder": Shown("vorticity", (3.0, 6.0, 9.0, 12.0), (-2.0, -2.0, 2.0, 8.0)),
