@@ -41,6 +41,7 @@ PICTURES = {
     "periodic_array": Shown("streamlines", (0.01,)),
     "periodic_channel": Shown("streamlines", (0.5, 2.5)),
     "rebound": Shown("vorticity", (0.006, 0.012, 0.018, 0.03), settings=("output.every=0.006",)),
+    "sheared_cell": Shown("speed", (0.001,)),
     "settling_cylinder": Shown("vorticity", (3.0, 6.0, 9.0, 12.0), (-2.0, -2.0, 2.0, 8.0)),
     "several_laws": Shown("speed", (0.01, 0.02, 0.03, 0.04)),
     "slider": Shown("speed", (0.03, 0.06, 0.09, 0.15)),

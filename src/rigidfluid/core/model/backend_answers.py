@@ -59,6 +59,8 @@ def advance(answer: Any, part: Any, fluid: Any, mesh: Any, step: Step) -> None:
     for name in _ENERGIES:
         refuse_no_number(getattr(answer, name), name, shorter=True)
     _refuse_negative(answer.kinetic_energy, "kinetic_energy")
+    if step.stresslets and part.stresslets:
+        refuse_other_rows(answer.stresslet, (count, d, d), "stresslet", shorter=True)
     if answer.stress_power is not None:
         refuse_no_number(answer.stress_power, "stress_power", shorter=True)
 

@@ -51,6 +51,8 @@ class FluidBackend(Part):
     held_fluxes: ClassVar[bool] = False
     """Tell whether it finds the drop of pressure for a flux that is held through periodic faces, and measures both by
     `driving`."""
+    stresslets: ClassVar[bool] = False
+    """Tell whether it gives stresslets of bodies to a `Step` that wants them."""
     state_format: ClassVar[str | None] = None
     """Name of the format of its state. Backends of one format resume each other's runs, and by `joined` and `cut` those
     of other numbers of ranks; None where neither can be."""

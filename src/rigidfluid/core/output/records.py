@@ -31,6 +31,7 @@ def columns(dimension: int, coordinates: Iterable[str] = COORDINATES) -> dict[st
     quantities = quantity_columns(dimension)
     position, velocity, force = quantities["position"], quantities["velocity"], quantities["force"]
     a, b, normal = (_components(name, dimension) for name in "abn")
+    stresslet = tuple(f"s{'xyz'[row]}{'xyz'[column]}" for row, column in zip(*np.triu_indices(dimension), strict=True))
     return {
         "bodies": ("time", "step", "body", *chain(*quantities.values()), "gap"),
         "contacts": ("time", "step", "a", "b", *a, *b, *normal, "gap", *force),
@@ -39,6 +40,7 @@ def columns(dimension: int, coordinates: Iterable[str] = COORDINATES) -> dict[st
         "steps": ("time", "step", "size", "error", "unknowns", "remeshes", "cells", "quality"),
         "probes": ("time", "step", "probe", *position, *velocity, "pressure"),
         "driving": ("time", "step", "surface", "flux", "pressure_drop"),
+        "stresslets": ("time", "step", "body", *stresslet),
     }
 
 
@@ -85,6 +87,7 @@ def records(
         "steps": [] if cost is None else [_step_row(system, state, stamp, cost)],
         "probes": list(_probe_rows(system, probes, state, stamp)),
         "driving": list(_driving_rows(system, state, stamp)),
+        "stresslets": list(_stresslet_rows(system, state, stamp)),
     }
 
 
@@ -164,3 +167,11 @@ def _driving_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:
     if names and system.backend.held_fluxes:
         for name, row in zip(names, system.backend.driving(state.fluid, state.mesh).tolist(), strict=True):
             yield (*stamp, name, *row)
+
+
+def _stresslet_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:
+    """A row for each body, where stresslets are known."""
+    if state.stresslet is not None:
+        upper = np.triu_indices(system.dimension)
+        for name, stresslet in zip(system.surfaces, state.stresslet, strict=False):
+            yield (*stamp, name, *stresslet[upper].tolist())

@@ -94,6 +94,7 @@ def assemble(model: Model) -> System:
         implicit=model.stepping.implicit,
         window=window,
         joined=joined_bodies(model),
+        stresslets=model.output.stresslets,
     )
 
 
