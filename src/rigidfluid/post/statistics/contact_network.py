@@ -18,7 +18,8 @@ from rigidfluid.post.statistics.samples import Samples
 class ContactNetwork(NamedTuple):
     """Means over the states: ``coordination``, contacts of a body with others [1]; ``touching``, share of bodies that
     have a contact, with walls too [1]; ``largest``, bodies in the largest group over all [1]; ``stress`` (d, d) of
-    contacts between bodies, and (s, d, d) by state [force/length^(d-1)]; ``on_walls``, forces on what does not move by name (d,) [force]."""
+    contacts between bodies, and (s, d, d) ``stress_by_state`` [force/length^(d-1)]; ``on_walls``, forces on what does
+    not move by name (d,) [force]."""
 
     coordination: Mean
     touching: Mean
