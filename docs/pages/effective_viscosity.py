@@ -148,7 +148,7 @@ the share φ is (d + 2)/2 in a dilute suspension: 2.5 for spheres (Einstein, Ann
 
 Lines through the three most dilute ones are {disk} for disks and {sphere} for spheres. Their intercepts are what a
 dilute suspension has. Their slopes are those of these cells, of one layer of bodies between walls, and no property
-of a suspension at large: with the share the walls come nearer too. Other cells with a disk, of the same share
-{share}, have:
+of a suspension at large: with the share the walls come nearer too, and the neighbours along the walls. How much
+that matters cells with a disk show that have the same share {share}, with other periods and distances of the walls:
 
 {shapes}"""
