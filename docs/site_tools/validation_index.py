@@ -47,6 +47,8 @@ SUBJECTS = {
         "lammps": "200 dry spheres compared with LAMMPS",
     },
     "Stokes flow and swimmers": {
+        "periodic_arrays": "Drag in arrays of cylinders and spheres: compared with published tables",
+        "effective_viscosity": "Sheared suspensions: viscosity by walls and by stresslets, compared with Einstein's",
         "swimmer": "A three-sphere swimmer in 2D: distance per cycle compared with two other computations",
         "swimmer_3d": "The same swimmer in 3D: compared with the exact series",
         "swimmer_near_wall": "A swimmer approaches a wall: a case of the paper",

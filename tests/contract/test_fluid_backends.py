@@ -148,6 +148,24 @@ class Overstated(Changed):
         return replace(advance, hydrodynamic_wrench=Wrench(1.001 * wrench.force, wrench.torque))
 
 
+class Stingy(ScikitFem):
+    """Fluxes that are too small by a millionth."""
+
+    def __init__(self, options, problem):
+        super().__init__(options, replace(problem, conditions=tuple(map(self.spared, problem.conditions))))
+
+    def spared(self, condition):
+        flux = condition.held_flux
+        return condition if flux is None else replace(condition, held_flux=lambda time: (1.0 - 1e-6) * flux(time))
+
+
+class Slackened(Changed):
+    """Stresslets that are too small by a thousandth."""
+
+    def found(self, advance):
+        return advance if advance.stresslet is None else replace(advance, stresslet=0.999 * advance.stresslet)
+
+
 class HalfDissipated(Changed):
     """|∇u|² in place of ½ |∇u + ∇uᵀ|² would be that in a channel."""
 
@@ -431,6 +449,9 @@ def _turned_round(twists: FloatArray, dimension: int) -> FloatArray:
         (Overstated, "test_newton_euler_holds_for_the_whole", (3,)),
         (Unloaded, "test_newton_euler_holds_for_the_whole", (3,)),
         (Overstated, "test_force_balances_the_pressures", (2,)),
+        (Stingy, "test_a_flux_that_is_held_is_driven_by_the_drop_of_poiseuille_flow", (2,)),
+        (Stingy, "test_a_flux_that_changes_is_met_in_every_step", (2,)),
+        (Slackened, "test_a_strain_works_on_stresslets", (2,)),
         (Overstated, "test_fluid_and_bodies_accelerate_as_one", (2, True)),
         (HalfDissipated, "test_flow_between_a_plane_of_symmetry_and_a_wall", (2, False)),
         (Hasty, "test_flow_between_a_plane_of_symmetry_and_a_wall", (2, False)),

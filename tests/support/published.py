@@ -112,3 +112,13 @@ def torque_of_twist(gap: float) -> float:
     Math. Soc. 14 (1915) 327, doi:10.1112/plms/s2_14.1.327."""
     a = float(np.arccosh(1.0 + gap))
     return float(np.sum((np.sinh(a) / np.sinh(np.arange(1, int(40.0 / a) + 2) * a)) ** 3))
+
+
+# Slow flow through a square array of cylinders: force on a unit length of one over viscosity and mean velocity, by
+# the share φ of the area. Sangani and Acrivos, Int. J. Multiphase Flow 8 (1982) 193, table 1, as quoted by Basilisk's
+# test `cylinders`.
+CYLINDER_ARRAY = {0.05: 15.56, 0.1: 24.83, 0.2: 51.53, 0.3: 102.90, 0.4: 217.89, 0.5: 532.55, 0.6: 1763.0, 0.7: 13520.0}
+
+# A simple cubic array of spheres: force over 6πμ, radius and mean velocity, by the share φ of the volume. Zick and
+# Homsy, J. Fluid Mech. 115 (1982) 13, table 2, as quoted by Basilisk's test `spheres`.
+SPHERE_ARRAY = {0.027: 2.008, 0.064: 2.810, 0.125: 4.292, 0.216: 7.442, 0.343: 15.4}

@@ -44,6 +44,8 @@ class SparseBackend(TaylorHoodBackend):
     oblique_faces: ClassVar[bool] = True
     periodic_faces: ClassVar[bool] = True
     exchanges_bodies: ClassVar[bool] = True
+    held_fluxes: ClassVar[bool] = True
+    stresslets: ClassVar[bool] = True
 
     options: SparseOptions
 

@@ -16,6 +16,7 @@ from rigidfluid.testing.fluid.oblique import ObliqueContract
 from rigidfluid.testing.fluid.output import OutputContract
 from rigidfluid.testing.fluid.periodic import PeriodicContract
 from rigidfluid.testing.fluid.responses import ResponsesContract
+from rigidfluid.testing.fluid.stresslets import StressletContract
 from rigidfluid.testing.fluid.transfer import TransferContract
 
 
@@ -31,6 +32,7 @@ class FluidBackendContract(
     LinkedContract,
     ObliqueContract,
     PeriodicContract,
+    StressletContract,
     ResponsesContract,
     TransferContract,
     MemoryContract,

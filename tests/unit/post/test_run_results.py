@@ -25,7 +25,7 @@ DISK = {
     "position": [0.5, 0.5],
     "velocity": [0.0, -0.5],
 }
-TABLES = ("bodies", "contacts", "joints", "energy", "steps", "probes")
+TABLES = ("bodies", "contacts", "joints", "energy", "steps", "probes", "driving", "stresslets")
 
 
 def wet_scene(**tables: Any) -> Any:

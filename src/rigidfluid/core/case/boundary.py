@@ -6,7 +6,13 @@ from collections.abc import Sequence
 from functools import partial, singledispatch
 
 from rigidfluid.core.case.boundary_tables import Place, placed_tables
-from rigidfluid.core.case.boundary_values import prescribed_pressure, prescribed_velocity, pressure_drop, wall_velocity
+from rigidfluid.core.case.boundary_values import (
+    held_flux,
+    prescribed_pressure,
+    prescribed_velocity,
+    pressure_drop,
+    wall_velocity,
+)
 from rigidfluid.core.fluid.conditions import (
     NoSlip,
     Periodic,
@@ -65,4 +71,6 @@ def _slip(table: SlipTable, place: Place) -> ConditionMaker:
 @condition_maker.register(PeriodicTable)
 def _periodic(table: PeriodicTable, place: Place) -> ConditionMaker:
     drop = pressure_drop(table, place)
-    return partial(Periodic, drop=no_pressure if drop is None else drop, field=place.at)
+    return partial(
+        Periodic, drop=no_pressure if drop is None else drop, held_flux=held_flux(table, place), field=place.at
+    )

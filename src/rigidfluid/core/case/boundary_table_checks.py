@@ -10,7 +10,7 @@ from rigidfluid.core.case.time_factor import rows_over_time
 from rigidfluid.core.geometry.piece import all_names
 from rigidfluid.core.nested.rows import check_rows
 from rigidfluid.core.scene.all_errors import all_told, raise_all
-from rigidfluid.core.scene.boundary_tables import BoundaryTable, VelocityTable, WallTable
+from rigidfluid.core.scene.boundary_tables import BoundaryTable, PeriodicTable, VelocityTable, WallTable
 from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.errors import SceneError
 
@@ -51,6 +51,12 @@ def _check_velocity_table(table: VelocityTable, at: str) -> None:
         raise SceneError(f"{at}.velocity", "nothing", "a value with type = 'velocity'", "Add 'velocity' or 'flux'.")
     if table.velocity is not None and table.flux is not None:
         raise SceneError(f"{at}.flux", "flux takes the place of velocity, and both are given", None, "Keep one.")
+
+
+@_check_table.register(PeriodicTable)
+def _check_periodic_table(table: PeriodicTable, at: str) -> None:
+    if table.pressure_drop is not None and table.flux is not None:
+        raise SceneError(f"{at}.flux", "flux takes the place of pressure_drop, and both are given", None, "Keep one.")
 
 
 @_check_table.register(WallTable)

@@ -61,6 +61,24 @@ def pressure_drop(table: PeriodicTable, place: Place) -> BoundaryPressure | None
     return BoundaryPressure(Expression(table.pressure_drop, f"{place.at}.pressure_drop", place.dimension))
 
 
+@dataclass(frozen=True)
+class HeldFlux:
+    """Flux Q(t) of fluid [length^d/time]."""
+
+    flux: Expression
+
+    def __call__(self, time: float) -> float:
+        """The flux at a time."""
+        return float(self.flux(time, np.zeros((1, 0)))[0])
+
+
+def held_flux(table: PeriodicTable, place: Place) -> HeldFlux | None:
+    """Flux into the domain through a periodic surface; None if not given."""
+    if table.flux is None:
+        return None
+    return HeldFlux(Expression(table.flux, f"{place.at}.flux", 0, f" on {place.piece.name!r}"))
+
+
 def wall_velocity(table: WallTable, dimension: int) -> WallVelocity | None:
     """Velocity of a wall's points by its ``table``; None for a wall at rest."""
     if table.velocity is None and table.angular_velocity is None:

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
 
 def periodic_pairs(tables: Sequence[BoundaryTable], domain: Domain) -> tuple[tuple[int, int], ...]:
-    """Pairs of numbers of periodic pieces; one with a higher pressure than its opposite comes first.
+    """Pairs of numbers of periodic pieces; one with a drop of pressure or a flux comes first.
 
-    Raises SceneError for a surface without an opposite one that is periodic too, or with a higher pressure on both.
+    Raises SceneError for a surface without an opposite one that is periodic too, or with what drives a flow on both.
     """
     placed = enumerate(placed_tables(tables, domain))
     chosen = {i: (table, place.at) for i, (table, place) in placed if isinstance(table, PeriodicTable)}
@@ -34,9 +34,11 @@ def periodic_pairs(tables: Sequence[BoundaryTable], domain: Domain) -> tuple[tup
             statement = f"{name!r} is periodic and the surface opposite to it is not"
             raise SceneError(f"{at}.type", statement, None, remedy)
         other, _ = chosen[others[0]]
-        if table.pressure_drop is not None and other.pressure_drop is not None:
-            statement = f"only one of {name!r} and {domain.names[others[0]]!r} can have the drop of pressure"
-            raise SceneError(f"{at}.pressure_drop", statement, None, "Keep one.")
-        if table.pressure_drop is not None or (other.pressure_drop is None and i < others[0]):
+        if table.driving and other.driving:
+            statement = (
+                f"only one of {name!r} and {domain.names[others[0]]!r} can have the drop of pressure or the flux"
+            )
+            raise SceneError(f"{at}.{table.driving}", statement, None, "Keep one.")
+        if table.driving or (not other.driving and i < others[0]):
             pairs.append((i, others[0]))
     return tuple(pairs)

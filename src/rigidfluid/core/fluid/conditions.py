@@ -17,6 +17,9 @@ from rigidfluid.core.geometry.arrays import FloatArray
 Value = Callable[[float, FloatArray], FloatArray]
 """Velocities (N, d) or pressures (N,) at a time and points (N, d)."""
 
+TimeValue = Callable[[float], float]
+"""A number at a time."""
+
 WallValue = Callable[[FloatArray], FloatArray]
 """Velocities (N, d) of a wall at its points (N, d), the same at any time."""
 
@@ -81,6 +84,12 @@ class BoundaryCondition(ABC):
     def data(self) -> Value:
         """Function of time and place that is prescribed: the velocity, unless said otherwise."""
         return self.velocity
+
+    @property
+    def held_flux(self) -> TimeValue | None:
+        """Flux into the domain that is prescribed as a whole, for which the drop of pressure is found
+        [length^d/time]; None if there is none."""
+        return None
 
     @property
     def sliding(self) -> WallValue | None:
@@ -207,12 +216,14 @@ class Periodic(BoundaryCondition):
     """One of two opposite surfaces with the same velocity and traction.
 
     The first of them names the other, by its number ``image``; the pressure may be higher on it, by ``drop(time,
-    points)`` (N,) [force/length^(d-1)]. The other has neither.
+    points)`` (N,) [force/length^(d-1)], or by as much as drives the flux ``held_flux(time)`` of fluid into the domain
+    through it [length^d/time]. The other has none of these.
     """
 
     type: ClassVar[str] = "periodic"
     image: int | None = None
     drop: Value = no_pressure
+    held_flux: TimeValue | None = None
 
     prescribes_normal = False
     prescribes_tangential = False

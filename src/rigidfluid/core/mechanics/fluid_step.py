@@ -50,6 +50,7 @@ def step_to(system: System, state: State, end: StepEnd, points: FloatArray | Non
         turning=np.zeros_like(load),
         kinematics=kinematics,
         links=system.solved_joints.links(pose, time),
+        stresslets=system.stresslets,
     )
 
 

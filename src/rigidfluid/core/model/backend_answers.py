@@ -59,6 +59,8 @@ def advance(answer: Any, part: Any, fluid: Any, mesh: Any, step: Step) -> None:
     for name in _ENERGIES:
         refuse_no_number(getattr(answer, name), name, shorter=True)
     _refuse_negative(answer.kinetic_energy, "kinetic_energy")
+    if step.stresslets and part.stresslets:
+        refuse_other_rows(answer.stresslet, (count, d, d), "stresslet", shorter=True)
     if answer.stress_power is not None:
         refuse_no_number(answer.stress_power, "stress_power", shorter=True)
 
@@ -86,6 +88,12 @@ def probes(answer: Any, part: Any, fluid: Any, mesh: Any, points: Any) -> None:
     _refuse_other_length(answer, 2)
     refuse_other_rows(answer[0], points.shape, "velocity", shorter=True)
     refuse_other_rows(answer[1], points.shape[:1], "pressure", shorter=True)
+
+
+def driving(answer: Any, part: Any, fluid: Any, mesh: Any) -> None:
+    """Refuse what are no flux and drop of pressure of each periodic pair."""
+    pairs = [condition for condition in part.problem.conditions if condition.image is not None]
+    refuse_other_rows(answer, (len(pairs) if part.held_fluxes else 0, 2), shorter=True)
 
 
 def _refuse_negative(energy: float, name: str) -> None:

@@ -6,6 +6,7 @@ from abc import abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from typing import ClassVar
 
+import numpy as np
 from scipy.sparse import csc_array
 
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
@@ -51,6 +52,11 @@ class FluidBackend(Part):
     """Tell whether it takes slip and pressure conditions on faces that lie across no axis."""
     periodic_faces: ClassVar[bool] = False
     """Tell whether it takes periodic conditions."""
+    held_fluxes: ClassVar[bool] = False
+    """Tell whether it finds the drop of pressure for a flux that is held through periodic faces, and measures both by
+    `driving`."""
+    stresslets: ClassVar[bool] = False
+    """Tell whether it gives stresslets of bodies to a `Step` that wants them."""
     state_format: ClassVar[str | None] = None
     """Name of the format of its state. Backends of one format resume each other's runs, and by `joined` and `cut` those
     of other numbers of ranks; None where neither can be."""
@@ -136,6 +142,12 @@ class FluidBackend(Part):
     @gives(backends.probes)
     def probe(self, fluid: FluidState, mesh: Mesh, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Velocity (N, d) and pressure (N,) at ``points`` (N, d); outside the mesh the nearest cell's values."""
+
+    @gives(backends.driving)
+    def driving(self, fluid: FluidState, mesh: Mesh) -> FloatArray:
+        """Flux into the domain [length^d/time] and mean excess of the pressure [force/length^(d-1)] at the first piece
+        of each periodic pair, in the order of their numbers, (c, 2); of no pairs unless it has `held_fluxes`."""
+        return np.zeros((0, 2))
 
     @abstractmethod
     @gives(number(-1.0))

@@ -126,7 +126,8 @@ class State:
     ``prescription``: what was prescribed since the start in the scene's place, None if nothing was. ``applied``: wrench
     from outside on the n bodies from now on, zero on those that are not free; None if nothing was applied yet.
     ``jumped``: the latest tick at which a prescribed velocity was changed by a jump, None before the first.
-    ``springs``: those along the surfaces of contacts, None where there are none.
+    ``springs``: those along the surfaces of contacts, None where there are none. ``stresslet`` (n, d, d): by the fluid
+    [force·length]; None at the start, and where it is not wanted.
     """
 
     tick: int
@@ -153,6 +154,7 @@ class State:
     applied: Wrench | None = None
     jumped: int | None = None
     springs: TangentialSprings | None = None
+    stresslet: FloatArray | None = None
 
     @property
     def is_on_new_mesh(self) -> bool:

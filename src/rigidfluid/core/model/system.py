@@ -47,6 +47,7 @@ class System:
     ``substeps``: of contacts in a step, None where they follow from the contacts; ``implicit``: one step, no substeps.
     ``detection_type(system)``: by which the loop asks the ``detector``; ``detector_why``: who chose that, and for what
     reason. ``reach``: the largest gap that is measured [length].
+    ``stresslets``: those of the bodies are wanted of the backend.
     ``rotational_factor`` (n,): of each body's surface, see `largest_rotational_factor` [1].
     """
 
@@ -83,6 +84,7 @@ class System:
     implicit: bool
     window: Window | None = None
     joined: IntArray = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
+    stresslets: bool = False
 
     @property
     def quasi_steady(self) -> bool:

@@ -253,7 +253,7 @@ class Step:
     ``turning`` (n, d+k): impulses whose inviscid response is added to the convecting velocity,
     zero but for steps in which contacts turn bodies around [force·time | force·length·time].
     ``provisional``: the step will be solved again, along another path of the bodies, and five digits do.
-    ``links``: what else holds the motions at the new time.
+    ``links``: what else holds the motions at the new time. ``stresslets``: the bodies' stresslets are wanted.
     """
 
     time: float
@@ -271,6 +271,7 @@ class Step:
     kinematics: Kinematics = EACH_ITS_OWN
     provisional: bool = False
     links: Links = NO_LINKS
+    stresslets: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -316,6 +317,9 @@ class Advance:
     ``source_power``: that of the problem's source on the fluid, ∫ f·u [energy/time].
     ``stress_power``: that of the end's viscous stress in the mean of the velocities at start and end, in a step without
     a past of a fluid with inertia; else None [energy/time].
+    ``stresslet`` (n, d, d): symmetric first moment of the fluid's tractions on each body about its centre, ∮ ½ (a σ·n +
+    σ·n a) with n into the fluid and its trace, for a pressure of zero mean in an enclosed flow; None where it is not
+    wanted [force·length].
     """
 
     fluid: FluidState
@@ -330,6 +334,7 @@ class Advance:
     grad_div: float = 0.0
     source_power: float = 0.0
     stress_power: float | None = None
+    stresslet: FloatArray | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -55,6 +55,7 @@ _STATE: Shapes = {
         "turning": "lk",
     },
     **{"hydrodynamic_wrench": _wrench("n"), "contact_wrench": _wrench("n"), "applied": _wrench("n")},
+    "stresslet": "ndd",
     "motions": {
         **{"pose": _pose("N"), "twist": _twist("N")},
         **{"contact": _wrench("N"), "hydrodynamic": _wrench("N")},

@@ -88,7 +88,7 @@ class History(Described):
         Parameters
         ----------
         name : str
-            ``bodies``, ``contacts``, ``joints``, ``energy``, ``steps`` or ``probes``.
+            ``bodies``, ``contacts``, ``joints``, ``energy``, ``steps``, ``probes``, ``driving`` or ``stresslets``.
         only : iterable of str, optional
             The columns that are wanted; all if not given. A folder that an earlier version has written has all that it
             knew.
@@ -184,6 +184,16 @@ class History(Described):
     def probes(self) -> dict[str, NDArray[Any]]:
         """The table of probes.csv: a row per probe and accepted step."""
         return self.table("probes")
+
+    @property
+    def driving(self) -> dict[str, NDArray[Any]]:
+        """The table of driving.csv: a row per pair of periodic surfaces and accepted step."""
+        return self.table("driving")
+
+    @property
+    def stresslets(self) -> dict[str, NDArray[Any]]:
+        """The table of stresslets.csv: a row per body and accepted step, with ``output.stresslets``."""
+        return self.table("stresslets")
 
 
 def _rows(path: Path) -> list[Row]:

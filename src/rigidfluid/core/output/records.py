@@ -31,6 +31,7 @@ def columns(dimension: int, coordinates: Iterable[str] = COORDINATES) -> dict[st
     quantities = quantity_columns(dimension)
     position, velocity, force = quantities["position"], quantities["velocity"], quantities["force"]
     a, b, normal = (_components(name, dimension) for name in "abn")
+    stresslet = tuple(f"s{'xyz'[row]}{'xyz'[column]}" for row, column in zip(*np.triu_indices(dimension), strict=True))
     return {
         "bodies": ("time", "step", "body", *chain(*quantities.values()), "gap"),
         "contacts": ("time", "step", "a", "b", *a, *b, *normal, "gap", *force),
@@ -38,6 +39,8 @@ def columns(dimension: int, coordinates: Iterable[str] = COORDINATES) -> dict[st
         "energy": ("time", "step", *LEDGER_COLUMNS),
         "steps": ("time", "step", "size", "error", "unknowns", "remeshes", "cells", "quality"),
         "probes": ("time", "step", "probe", *position, *velocity, "pressure"),
+        "driving": ("time", "step", "surface", "flux", "pressure_drop"),
+        "stresslets": ("time", "step", "body", *stresslet),
     }
 
 
@@ -83,6 +86,8 @@ def records(
         "energy": [(*stamp, *(getattr(state.ledger, name) for name in LEDGER_COLUMNS))],
         "steps": [] if cost is None else [_step_row(system, state, stamp, cost)],
         "probes": list(_probe_rows(system, probes, state, stamp)),
+        "driving": list(_driving_rows(system, state, stamp)),
+        "stresslets": list(_stresslet_rows(system, state, stamp)),
     }
 
 
@@ -152,3 +157,21 @@ def _probe_rows(system: System, probes: FloatArray, state: State, stamp: Row) ->
         velocity[outside], pressure[outside] = np.nan, np.nan
     for i, point in enumerate(probes):
         yield (*stamp, i, *point.tolist(), *velocity[i].tolist(), float(pressure[i]))
+
+
+def _driving_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:
+    """A row for each pair of periodic surfaces, by the name of the first."""
+    if system.fluid is None or count_cells(state.mesh) == 0:
+        return
+    names = [condition.name for condition in system.fluid.conditions if condition.image is not None]
+    if names and system.backend.held_fluxes:
+        for name, row in zip(names, system.backend.driving(state.fluid, state.mesh).tolist(), strict=True):
+            yield (*stamp, name, *row)
+
+
+def _stresslet_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:
+    """A row for each body, where stresslets are known."""
+    if state.stresslet is not None:
+        upper = np.triu_indices(system.dimension)
+        for name, stresslet in zip(system.surfaces, state.stresslet, strict=False):
+            yield (*stamp, name, *stresslet[upper].tolist())

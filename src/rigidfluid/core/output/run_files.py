@@ -20,6 +20,8 @@ TABLES = {
     "energy": "the energy balance",
     "steps": "size, error with `time.tolerance`, unknowns, new meshes",
     "probes": "the fluid at the points of `output.probes`",
+    "driving": "flux and drop of pressure of each pair of periodic surfaces",
+    "stresslets": "a row per body with `output.stresslets`",
 }
 """Names of a run's tables, and what is in each."""
 

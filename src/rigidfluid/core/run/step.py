@@ -85,6 +85,7 @@ def attempt(tools: Tools, state: State, level: int, path: BodyStep, provisional:
         springs=path.springs,
         gaps=place.gaps,
         hydrodynamic_wrench=advance.hydrodynamic_wrench,
+        stresslet=advance.stresslet,
         contact_wrench=_mean(path.impulse, end.size),
         motions=_motions(path, step, advance, end.size),
         link=_link_load(system, path, step, advance),

@@ -27,6 +27,8 @@ def faces_start_at_once(problem: FluidProblem, mesh: Mesh) -> bool:
 
 def _drives_at_once(condition: BoundaryCondition, inertia: bool, mesh: Mesh) -> bool:
     """Tell whether a condition is not zero at time 0, at vertices and centres of its facets."""
+    if condition.held_flux is not None:
+        return condition.held_flux(0.0) != 0.0
     corners = mesh.points[mesh.facets[mesh.markers == condition.surface]]
     points = np.concatenate([*corners.swapaxes(0, 1), corners.mean(axis=1)])
     driven = condition.velocity(0.0, points).any()

@@ -91,6 +91,16 @@ class PeriodicTable(_BoundaryTable):
     pressure_drop: float | None = Field(
         default=None, description="Excess of the pressure here over that on the opposite surface [force/length^(d-1)]"
     )
+    flux: Formula | None = Field(
+        default=None,
+        description="Instead of `pressure_drop`, the flux of fluid into the domain here, and out of it on the opposite "
+        "surface: a number or an expression of t only; the drop of pressure is found in each step [length^d/time]",
+    )
+
+    @property
+    def driving(self) -> Literal["pressure_drop", "flux"] | None:
+        """The key that drives a flow, if one is given."""
+        return "pressure_drop" if self.pressure_drop is not None else "flux" if self.flux is not None else None
 
 
 BoundaryTable = WallTable | VelocityTable | PressureTable | SlipTable | PeriodicTable

@@ -31,3 +31,4 @@ class OutputTable(Table):
 
     every: Positive = Field(description="Time between two written fields and checkpoints [time]")
     probes: tuple[Vector, ...] = Field(default=(), description="Points that record velocity and pressure [length]")
+    stresslets: bool = Field(default=False, description="Record the stresslets of the bodies by the fluid")

@@ -94,6 +94,7 @@ def assemble(model: Model, check: Callable[[Model, Pose], None] = check_geometry
         implicit=model.stepping.implicit,
         window=window,
         joined=joined_bodies(model),
+        stresslets=model.output.stresslets,
     )
 
 

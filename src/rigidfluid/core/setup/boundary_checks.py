@@ -97,6 +97,11 @@ def check_periodic(model: Model) -> None:
     if not backend.periodic_faces:
         found = f"'periodic' with backend {backend.name!r}"
         raise SceneError(at, found, "a backend that takes periodic surfaces", "Use backend = 'scikit-fem'.")
+    held = [condition for condition in model.conditions if condition.held_flux is not None]
+    if held and not backend.held_fluxes:
+        found = f"a flux through a periodic surface with backend {backend.name!r}"
+        remedy = "Use backend = 'scikit-fem', or give pressure_drop."
+        raise SceneError(f"{held[0].field}.flux", found, "a backend that finds the drop of pressure", remedy)
     if model.window is not None:
         raise SceneError(at, "'periodic' with a window", "one of both", "Remove [domain.window].")
     if domain.facets is not None:
@@ -128,9 +133,16 @@ def _check_pairs(model: Model) -> None:
             raise SceneError(condition.field, found, "periodic conditions on pairs alone", remedy)
     for _, second in model.domain.periodic:
         condition = model.conditions[second]
-        if isinstance(condition, Periodic) and condition.drop is not no_pressure:
-            statement = f"only the first of a pair can have a drop of pressure, and {condition.name!r} is the second"
-            raise SceneError(condition.field, statement, None, "Keep that of the first.")
+        if isinstance(condition, Periodic) and (condition.drop is not no_pressure or condition.held_flux is not None):
+            statement = (
+                f"only the first of a pair can have a drop of pressure or a flux, and {condition.name!r} is the "
+            )
+            raise SceneError(condition.field, f"{statement}second", None, "Keep that of the first.")
+    for first, _ in model.domain.periodic:
+        condition = model.conditions[first]
+        if isinstance(condition, Periodic) and condition.drop is not no_pressure and condition.held_flux is not None:
+            statement = f"{condition.name!r} has a drop of pressure, and a flux for which it is to be found"
+            raise SceneError(condition.field, statement, None, "Keep one.")
 
 
 def oblique_conditions(model: Model) -> list[BoundaryCondition]:
@@ -184,7 +196,10 @@ def _check_values(model: Model, condition: BoundaryCondition, piece: Piece) -> N
     """Refuse functions whose values, where they are sampled, are not finite or not of their shape."""
     points, _ = quadrature(piece, model.domain)
     steady = isinstance(condition.data, BoundaryData) and condition.data.is_steady
-    for time in sample_times(model.conditions, model.time.end, steady=steady):
+    for time in sample_times(model.conditions, model.time.end, steady=steady and condition.held_flux is None):
+        if condition.held_flux is not None and not np.isfinite(condition.held_flux(float(time))):
+            found = f"a flux of {condition.held_flux(float(time))} on {piece.name!r} at time {time:g}"
+            raise SceneError(condition.field, found, "finite numbers", "Correct the function.")
         asked = {"velocities": condition.velocity, "pressures": condition.pressure}
         for what, shape in (("velocities", points.shape), ("pressures", points.shape[:1])):
             values = np.asarray(asked[what](float(time), points))

@@ -165,14 +165,18 @@ def _own_speed(body: RigidBody, lever: float) -> float:
 def fastest_flow(model: Model) -> float:
     """Greatest speed prescribed on the boundary and at the start, at the points and times sampled [length/time]."""
     inflows = sampled_inflows(model.conditions, model.domain)
-    times = sample_times(model.conditions, model.time.end, steady=all(inflow.velocity.is_steady for inflow in inflows))
+    pieces = zip(model.conditions, model.domain.pieces, strict=True)
+    held = [(condition.held_flux, piece.area) for condition, piece in pieces if condition.held_flux is not None]
+    steady = not held and all(inflow.velocity.is_steady for inflow in inflows)
+    times = sample_times(model.conditions, model.time.end, steady=steady)
     sliding = [
         float(np.linalg.norm(wall.velocity(points_of(wall.shape, model.domain)), axis=1).max())
         for wall in model.walls
         if wall.velocity is not None
     ]
     inflowing = [inflow.speed(time) for inflow in inflows for time in times]
-    return max([model.fluid.fastest_at_start(model.domain), *sliding, *inflowing])
+    passing = [abs(flux(float(time))) / area for flux, area in held for time in times]
+    return max([model.fluid.fastest_at_start(model.domain), *sliding, *inflowing, *passing])
 
 
 def _lever(body: Body) -> float:

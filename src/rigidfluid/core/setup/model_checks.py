@@ -180,6 +180,14 @@ def _check_probes(model: Model) -> None:
         raise SceneError(f"output.probes.{i}", list(probes[i]), "a point of the domain", "Move it inside.")
 
 
+def _check_stresslets(model: Model) -> None:
+    backend = model.fluid.backend.part
+    if model.output.stresslets and not backend.stresslets:
+        found = f"true with backend {backend.name!r}"
+        remedy = "Use backend = 'scikit-fem', or leave it out."
+        raise SceneError("output.stresslets", found, "a backend that gives stresslets", remedy)
+
+
 def _check_control(body: RigidBody, at: str) -> None:
     """A body moves freely, is fixed, or follows a prescription: one of them."""
     given = [key for key in ("velocity", "angular_velocity") if getattr(body, key) is not None]
@@ -238,6 +246,7 @@ _QUESTIONS: tuple[Callable[[Model], None], ...] = (
     _check_strokes,
     _check_around,
     _check_probes,
+    _check_stresslets,
     check_laws,
     check_pair_forces,
 )

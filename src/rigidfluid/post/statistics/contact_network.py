@@ -18,12 +18,14 @@ from rigidfluid.post.statistics.samples import Samples
 class ContactNetwork(NamedTuple):
     """Means over the states: ``coordination``, contacts of a body with others [1]; ``touching``, share of bodies that
     have a contact, with walls too [1]; ``largest``, bodies in the largest group over all [1]; ``stress`` (d, d) of
-    contacts between bodies [force/length^(d-1)]; ``on_walls``, forces on what does not move by name (d,) [force]."""
+    contacts between bodies, and (s, d, d) ``stress_by_state`` [force/length^(d-1)]; ``on_walls``, forces on what does
+    not move by name (d,) [force]."""
 
     coordination: Mean
     touching: Mean
     largest: Mean
     stress: Mean
+    stress_by_state: FloatArray
     on_walls: dict[str, Mean]
 
 
@@ -45,11 +47,13 @@ def contact_network(samples: Samples, table: Mapping[str, NDArray[Any]]) -> Cont
     def over_states(figure: Callable[[int, IntArray, IntArray], float]) -> Mean:
         return mean(np.array([figure(samples.count, *one) for one in by_state]))
 
+    stress = _stress(samples, state, a, b, force)
     return ContactNetwork(
         coordination=over_states(_coordination),
         touching=over_states(_touching),
         largest=over_states(_largest),
-        stress=_stress(samples, state, a, b, force),
+        stress=mean(stress),
+        stress_by_state=stress,
         on_walls=_on_walls(samples, state, (table["a"][known], table["b"][known]), (a, b), force),
     )
 
@@ -75,13 +79,14 @@ def _pairs(a: IntArray, b: IntArray) -> IntArray:
     return np.unique(np.sort(np.stack([a[both], b[both]], axis=1), axis=1), axis=0)
 
 
-def _stress(samples: Samples, state: IntArray, a: IntArray, b: IntArray, force: FloatArray) -> Mean:
+def _stress(samples: Samples, state: IntArray, a: IntArray, b: IntArray, force: FloatArray) -> FloatArray:
+    """Stress of contacts between bodies in each state (s, d, d) [force/length^(d-1)]."""
     both = (a >= 0) & (b >= 0)
     state, force = state[both], force[both]
     arm = samples.position[state, a[both]] - samples.position[state, b[both]]
     stress = np.zeros((len(samples.step), samples.dimension, samples.dimension))
     np.add.at(stress, state, -force[:, :, None] * arm[:, None, :] / samples.volume)
-    return mean(stress)
+    return stress
 
 
 def _on_walls(

@@ -14,6 +14,7 @@ from rigidfluid.post.statistics.pair_distribution import PairDistribution
 from rigidfluid.post.statistics.profiles import Profile
 from rigidfluid.post.statistics.samples import Samples
 from rigidfluid.post.statistics.structure_factor import StructureFactor
+from rigidfluid.post.statistics.suspension_stress import SuspensionStress
 
 
 class Statistics(NamedTuple):
@@ -30,6 +31,7 @@ class Statistics(NamedTuple):
     diffusion: Diffusion
     profile: Profile
     contacts: ContactNetwork
+    suspension: SuspensionStress | None
 
     def to_dict(self) -> dict[str, Any]:
         """Names, numbers and lists; each mean as its value and its standard error, None for what is unknown."""
@@ -63,6 +65,7 @@ class Statistics(NamedTuple):
                 "stress": contacts.stress.to_list(),
                 "force_on": {name: force.to_list() for name, force in contacts.on_walls.items()},
             },
+            "suspension_stress": None if self.suspension is None else self.suspension.to_dict(),
         }
 
     @property
@@ -80,6 +83,8 @@ class Statistics(NamedTuple):
             f"share in the largest group: {_told(contacts.largest)}",
         ]
         lines += [f"force on {name}: {_told(force)} [force]" for name, force in contacts.on_walls.items()]
+        if self.suspension is not None and self.suspension.relative_viscosity is not None:
+            lines.append(f"viscosity over that of the fluid: {_told(self.suspension.relative_viscosity)}")
         return [self.units.put_into(line) for line in lines]
 
 

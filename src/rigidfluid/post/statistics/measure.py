@@ -10,6 +10,7 @@ from typing import Any
 import matplotlib
 
 from rigidfluid.core.output.disk import replace_text, writing
+from rigidfluid.core.output.tables import table_path
 from rigidfluid.errors import OutputError
 from rigidfluid.post.reports.results import Results, read_results
 from rigidfluid.post.reports.style import STYLE, save
@@ -23,6 +24,7 @@ from rigidfluid.post.statistics.plot import statistics_plot
 from rigidfluid.post.statistics.profiles import profile
 from rigidfluid.post.statistics.samples import samples_of
 from rigidfluid.post.statistics.structure_factor import structure_factor
+from rigidfluid.post.statistics.suspension_stress import suspension_stress
 
 
 def statistics(
@@ -34,7 +36,8 @@ def statistics(
     ``across`` an axis. Raises OutputError for a folder that cannot be read, and for too few bodies or states.
     """
     results = read_results(folder, motion_only=True)
-    found = measured(results, load_results(folder).table("contacts"), since, until, across)
+    tables = {name: _table(Path(folder), name) for name in ("contacts", "stresslets")}
+    found = measured(results, tables, since, until, across)
     figures = Path(folder) / "statistics.json"
     with matplotlib.rc_context(STYLE), writing(figures):
         text = json.dumps(found.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
@@ -43,13 +46,22 @@ def statistics(
     return found, [figures, *plots]
 
 
+def _table(folder: Path, name: str) -> dict[str, Any]:
+    """A table of a run; nothing of one that an earlier version has not written."""
+    return load_results(folder).table(name) if name == "contacts" or table_path(folder, name).exists() else {}
+
+
 def measured(
-    results: Results, contacts: Mapping[str, Any], since: float | None, until: float | None, across: str
+    results: Results, tables: Mapping[str, dict[str, Any]], since: float | None, until: float | None, across: str
 ) -> Statistics:
-    """Statistics of these results."""
+    """Statistics of these results, with their ``tables`` of contacts and stresslets."""
     if across not in list(results.axes):
         raise OutputError("--across", across, f"one of {', '.join(results.axes)}", "Name an axis.")
     samples = samples_of(results, since, until)
+    network, stresslets = contact_network(samples, tables["contacts"]), tables["stresslets"]
+    stress = None
+    if stresslets:
+        stress = suspension_stress(samples, results.system, stresslets, network.stress_by_state)
     return Statistics(
         results.units,
         samples,
@@ -60,5 +72,6 @@ def measured(
         structure_factor(samples),
         diffusion(samples),
         profile(samples, results.axes.index(across)),
-        contact_network(samples, contacts),
+        network,
+        stress,
     )

@@ -12,11 +12,12 @@ from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.model.types import Advance, FluidState, Mesh, Step, Twist, Wrench
 from rigidfluid.taylor_hood.elements.container import container_velocity
+from rigidfluid.taylor_hood.stepping.stresslets import body_volumes, stresslets
 from rigidfluid.taylor_hood.system.boundary import FaceFlow, pressure_load
 from rigidfluid.taylor_hood.system.coupled import CoupledMatrix, CoupledSystem, Solution, masses_alone
 from rigidfluid.taylor_hood.system.discretisation import Discretisation, dissipation, kinetic_energy, stress_power
+from rigidfluid.taylor_hood.system.driving import solve_driven
 from rigidfluid.taylor_hood.system.grad_div import grad_div_dissipation
-from rigidfluid.taylor_hood.system.links import solve_linked
 
 _TURNING_TOLERANCE = 1e-3
 """Relative residual of the solve that corrects the advection near bodies which contacts turn around [1]."""
@@ -52,10 +53,11 @@ def advance(equations: Equations, tolerance: float, attempt: FluidState | None) 
         guess = step.kinematics.motion_twist(attempt["twist"])
         velocity, pressure = attempt["velocity"], attempt["pressure"]
         system = replace(system, velocity=velocity, pressure=pressure, twist=guess, again=True)
-    solution, link_force = solve_linked(discretisation, system, step.links, tolerance)
+    driven = solve_driven(discretisation, system, step.links, step.time, tolerance)
+    solution, on_faces = driven.solution, on_faces + driven.load
     if solution.jump_load is not None:
         on_faces = on_faces + solution.jump_load
-    return _measured(equations, solution, on_faces, link_force)
+    return _measured(equations, solution, on_faces, driven.link_force)
 
 
 def _measured(equations: Equations, solution: Solution, on_faces: FloatArray, link_force: FloatArray) -> Advance:
@@ -81,7 +83,20 @@ def _measured(equations: Equations, solution: Solution, on_faces: FloatArray, li
         grad_div=grad_div_dissipation(discretisation, matrix, velocity),
         source_power=_source_power(discretisation, matrix, velocity, step.time),
         stress_power=stress_power(discretisation, matrix.points, velocity, mean) if begins else None,
+        stresslet=_stresslets(equations, solution) if step.stresslets else None,
     )
+
+
+def _stresslets(equations: Equations, solution: Solution) -> FloatArray:
+    """Stresslets of the bodies (n, d, d), for the pressure that the state has."""
+    surfaces, points = equations.discretisation.surfaces, equations.matrix.node_points
+    found = stresslets(surfaces, -solution.reaction, points, equations.step.pose.position)
+    if not surfaces.enclosed:
+        return found
+    centred = centre_pressure(equations.discretisation, equations.matrix.points, solution.pressure)
+    raised = float(centred[0] - solution.pressure[0])
+    volumes = body_volumes(surfaces, equations.mesh, points)
+    return np.asarray(found - raised * volumes[:, None, None] * np.eye(points.shape[1]))
 
 
 def _state(equations: Equations, solution: Solution) -> FluidState:

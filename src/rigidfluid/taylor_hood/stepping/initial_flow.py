@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.model.types import FluidState, Mesh, Pose, Twist
+from rigidfluid.core.model.types import NO_LINKS, FluidState, Mesh, Pose, Twist
 from rigidfluid.errors import SceneError, StepRejected
 from rigidfluid.taylor_hood.elements.container import container_velocity
 from rigidfluid.taylor_hood.elements.state import resting_state
@@ -16,6 +16,7 @@ from rigidfluid.taylor_hood.stepping.transfer import project
 from rigidfluid.taylor_hood.system.boundary import pressure_load
 from rigidfluid.taylor_hood.system.coupled import CoupledMatrix, CoupledSystem
 from rigidfluid.taylor_hood.system.discretisation import Discretisation
+from rigidfluid.taylor_hood.system.driving import solve_driven
 
 STEADY, MOST_ITERATIONS = 1e-8, 200
 """A flow is steady when an iteration changes it by so little, relative in L²; so many are tried."""
@@ -83,7 +84,7 @@ def _picard(target: Discretisation, tolerance: float, system: CoupledSystem) -> 
     frame = container_velocity(target.surfaces, 0.0, matrix.node_points)
     for _ in range(MOST_ITERATIONS):
         try:
-            solution = target.solve(system, tolerance)
+            solution = solve_driven(target, system, NO_LINKS, 0.0, tolerance).solution
         except StepRejected as error:
             raise _not_steady(target, matrix.node_points, system.velocity, str(error)) from None
         change = _relative_norm(target, matrix.points, solution.velocity - system.velocity, solution.velocity)

@@ -13,6 +13,7 @@ from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.elements.sampling import Samples
 from rigidfluid.taylor_hood.elements.state import resting_state
 from rigidfluid.taylor_hood.system.discretisation import Discretisation, Projection, kinetic_energy
+from rigidfluid.taylor_hood.system.driving import fluxes
 
 _TIGHTER, _TIGHTEST = 1e-3, 1e-11
 """Residual of the projection that a run starts from, over the steps' tolerance, and its least value."""
@@ -108,8 +109,27 @@ def struck(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twi
     prescribed = surfaces.prescribed_velocity(0.0, node_points, pose.position, state["twist"], every)
     projection = target.projection(mesh.geometry, pose.position)
     least = projection.nearest(np.zeros_like(prescribed), _start_tolerance(tolerance), prescribed, prescribed)
+    least = _with_held_fluxes(least, target, projection, node_points, tolerance)
     state["velocity"] = state["velocity_previous"] = least
     return state, kinetic_energy(target, mesh.geometry, least)
+
+
+def _with_held_fluxes(
+    velocity: FloatArray, target: Discretisation, projection: Projection, node_points: FloatArray, tolerance: float
+) -> FloatArray:
+    """A potential flow (nodes, d) with the fluxes held at time 0: an impulse of the drop of pressure from a face on
+    gives the fluid that rests on all surfaces what a uniform one along the face's normal does."""
+    surfaces, still = target.surfaces, np.zeros_like(velocity)
+    held = [(face, face.condition.held_flux) for face in surfaces.faces if face.condition.held_flux is not None]
+    if not held:
+        return velocity
+    faces, start = [face for face, _ in held], _start_tolerance(tolerance)
+    impulses = [np.broadcast_to(np.asarray(face.condition.normal), velocity.shape).copy() for face in faces]
+    responses = [projection.nearest(impulse, start, impulse, still) for impulse in impulses]
+    by_impulse = np.array([fluxes(surfaces, faces, node_points, each) for each in responses]).T
+    wanted = np.array([flux(0.0) for _, flux in held])
+    missing = np.linalg.solve(by_impulse, wanted - fluxes(surfaces, faces, node_points, velocity))
+    return np.asarray(velocity + np.tensordot(missing, np.array(responses), axes=1))
 
 
 def project(

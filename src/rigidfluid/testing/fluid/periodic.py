@@ -1,4 +1,5 @@
-"""Periodic faces: outflow through one is inflow through the other, and a pressure may drop between them."""
+"""Periodic faces: outflow through one is inflow through the other, and a pressure may drop between them,
+or a flux be held."""
 
 from __future__ import annotations
 
@@ -7,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rigidfluid.core.fluid.conditions import Periodic, Slip, Value, no_pressure
+from rigidfluid.core.fluid.conditions import Periodic, Slip, TimeValue, Value, no_pressure
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mesh.topology import boundary_facets
@@ -20,6 +21,9 @@ from rigidfluid.testing.fluid.flow import Bodies, Flow, figures
 
 DROP = 2.0
 """Pressure drop from x0 to x1."""
+
+FLUX = 0.7
+"""Flux from x0 to x1."""
 
 
 class PeriodicContract(FluidContract):
@@ -80,6 +84,55 @@ class PeriodicContract(FluidContract):
         self.assert_close(flow.advance.hydrodynamic_wrench.force[0, 0], DROP, scale=10.0)
         if dimension == 2:  # in 3D dissipation on curved cells depends on the rule of its integral
             self.assert_close(flow.advance.boundary_power, flow.advance.dissipation)
+
+    def test_a_flux_that_is_held_is_driven_by_the_drop_of_poiseuille_flow(self, dimension: int) -> None:
+        """12 μ Q/h³ over a length 1 and a height h = 1, with the flux Q per width; steady, without inertia."""
+        posed = self._holding(problem(dimension, inertia=False), (0, 2) if dimension == 3 else (0,), lambda _: FLUX)
+        flow = self.empty(posed, box(dimension, 3)).after(None)
+        flux, drop = flow.backend.driving(flow.fluid, flow.mesh)[0]
+        height = samples(dimension)[:, 1]
+        along = 6.0 * FLUX * height * (1.0 - height)
+        self.assert_close([flux, drop], [FLUX, 12.0 * VISCOSITY * FLUX], scale=10.0)
+        self.assert_close(flow.probe(samples(dimension))[0], np.outer(along, np.eye(dimension)[0]), scale=10.0)
+        self.assert_close(flow.advance.boundary_power, flow.advance.dissipation, scale=10.0)
+
+    def test_a_flux_that_changes_is_met_in_every_step(self, dimension: int) -> None:
+        """With inertia and convection, from rest, to rounding whatever the residual of the solver."""
+        posed = self._holding(problem(dimension), (0,), lambda time: np.sin(5.0 * time))
+        flow = self.empty(posed, box(dimension, 3))
+        for _ in range(4):
+            flow = flow.after(0.1)
+            flux, drop = flow.backend.driving(flow.fluid, flow.mesh)[0]
+            assert abs(flux - np.sin(5.0 * flow.time)) < 1e-12
+        assert drop > 0.0
+
+    def test_the_drop_that_is_found_drives_the_flow_that_was_held(self, dimension: int) -> None:
+        """A free body in the flow of a flux, and of the drop that was found for it."""
+        held = self._holding(problem(dimension, bodies=1), (0,), lambda _: FLUX)
+        flow = self._round_a_body(held, dimension).after(0.1)
+        (_, drop), *_ = flow.backend.driving(flow.fluid, flow.mesh)
+        driven = self._round_a_body(self._periodic(problem(dimension, bodies=1), (0,), drop), dimension).after(0.1)
+        for name, value in figures(flow.advance).items():
+            self.assert_close(value, figures(driven.advance)[name], scale=100.0 + 10.0 * abs(drop))
+
+    def _round_a_body(self, posed: FluidProblem, dimension: int) -> Flow:
+        """A free ball in the middle of the box."""
+        if not self.backend.curved_cells:
+            pytest.skip(f"{self.backend.name} takes straight cells alone")
+        pose = Pose(np.full((1, dimension), CENTRE), np.eye(1, 1 if dimension == 2 else 4))
+        mesh = self.make_mesh(ball_in_a_box(dimension, 2))
+        return Flow.start(self.make_backend(posed), mesh, pose, Bodies.uniform(pose, prescribed=False))
+
+    def _holding(self, posed: FluidProblem, axes: tuple[int, ...], flux: TimeValue) -> FluidProblem:
+        """The box with the faces across some axes periodic, and a ``flux`` held through the first of them."""
+        if not self.backend.held_fluxes:
+            pytest.skip(f"{self.backend.name} holds no flux")
+        periodic = self._periodic(posed, axes, 0.0)
+        first = periodic.conditions[0]
+        assert isinstance(first, Periodic)
+        return replace(
+            periodic, conditions=(replace(first, drop=no_pressure, held_flux=flux), *periodic.conditions[1:])
+        )
 
     def _periodic(self, posed: FluidProblem, axes: tuple[int, ...], drop: float = DROP) -> FluidProblem:
         """The box with the faces across some axes periodic, a pressure drop from the first of them."""

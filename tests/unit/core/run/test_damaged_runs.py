@@ -188,7 +188,9 @@ def test_a_file_of_an_output_that_is_other_than_the_checkpoint_says(folder: Path
     refuse_to_resume(folder, name, "no such file")
 
 
-@pytest.mark.parametrize("name", ["bodies.csv", "contacts.csv", "joints.csv", "energy.csv", "steps.csv", "probes.csv"])
+@pytest.mark.parametrize(
+    "name", ["bodies.csv", "contacts.csv", "joints.csv", "energy.csv", "steps.csv", "probes.csv", "driving.csv"]
+)
 def test_a_table_that_is_other_than_the_checkpoint_says(folder: Path, name: str) -> None:
     path = folder / name
     text = path.read_bytes()

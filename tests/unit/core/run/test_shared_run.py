@@ -124,7 +124,16 @@ def test_a_resumed_run_is_the_uninterrupted_one_to_the_last_bit(tmp_path):
 def test_each_rank_keeps_its_part_and_the_root_what_is_there_once(tmp_path):
     histories = shared(2, tmp_path)
     assert {path.name for path in tmp_path.iterdir()} == {
-        *("bodies.csv", "contacts.csv", "joints.csv", "energy.csv", "steps.csv", "probes.csv"),
+        *(
+            "bodies.csv",
+            "contacts.csv",
+            "joints.csv",
+            "energy.csv",
+            "steps.csv",
+            "probes.csv",
+            "driving.csv",
+            "stresslets.csv",
+        ),
         *("state.h5", "state.1.h5", "fields.pvd", "fields", "summary.json", "run.lock"),
     }
     assert histories[0].summary["files"] == histories[1].summary["files"]

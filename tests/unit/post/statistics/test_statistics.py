@@ -159,3 +159,39 @@ def test_a_single_body_has_none(tmp_path: Path) -> None:
     rigidfluid.run(dry_scene({}, ball([0.5, 0.5], [0.1, 0.0]), end=0.02, step=1e-2), tmp_path)
     with pytest.raises(OutputError, match="1 bodies that move"):
         statistics(tmp_path)
+
+
+@pytest.mark.long
+def test_the_viscosity_of_a_sheared_suspension_is_what_its_walls_feel(tmp_path: Path) -> None:
+    """Two free disks between walls that slide, in Stokes flow: by stresslets, and by the walls' power."""
+    disk = {"type": "sphere", "radius": 1.0, "density": 1e-9}
+    disks = [disk | {"position": place} for place in ([3.0, 4.0], [9.0, 8.0])]
+    walls = [
+        {"on": "all", "type": "periodic"},
+        {"on": "bottom", "type": "wall", "velocity": [-6.0, 0.0]},
+        {"on": "top", "type": "wall", "velocity": [6.0, 0.0]},
+    ]
+    scene = rigidfluid.scene_from_dict(
+        {
+            "scene": {"name": "sheared", "dimension": 2},
+            "fluid": {"model": "stokes", "density": 1.0, "viscosity": 2.0},
+            "domain": {"lower": [0.0, 0.0], "upper": [12.0, 12.0]},
+            "boundary": walls,
+            "body": disks,
+            "mesh": {"size": 1.5, "size_body": 0.3},
+            "time": {"end": 0.02, "step": 0.005},
+            "output": {"every": 0.02, "stresslets": True},
+        }
+    )
+    history = rigidfluid.run(scene, tmp_path)
+    found, _ = statistics(tmp_path, since=0.005)
+    assert found.suspension is not None
+    assert found.suspension.relative_viscosity is not None
+    assert found.suspension.shear_rate == pytest.approx(1.0)
+    energy = history.energy
+    power = (energy["boundary"][-1] - energy["boundary"][1]) / (energy["time"][-1] - energy["time"][1])
+    assert found.suspension.relative_viscosity.value == pytest.approx(power / (2.0 * 144.0), rel=1e-4)
+    assert found.suspension.relative_viscosity.value > 1.04
+    told = json.loads((tmp_path / "statistics.json").read_text())["suspension_stress"]
+    assert told["fluid"][0][0][1] == pytest.approx(2.0 * (told["relative_viscosity"][0] - 1.0), rel=1e-6)
+    assert any(line.startswith("viscosity over that of the fluid: 1.") for line in found.lines)
