@@ -33,8 +33,8 @@ def stuck(system: System, state: State, rejection: StepRejected, time: float, sh
 
 
 def _near_openings(system: System, state: State) -> list[tuple[float, str, str]]:
-    """Gap, body and name of the surface, of each body and each surface that does not repel and that no body crosses: those
-    are in no contact."""
+    """Gap, body and name of the surface, of each body and each surface that neither repels nor is crossed: those are in
+    no contact."""
     passed = {wall.name for wall in system.walls}
     if len(system.lattice.vectors):
         passed |= {system.domain.names[number] for pair in system.domain.periodic for number in pair}
