@@ -47,8 +47,8 @@ def points_of_b(contacts: Contacts) -> FloatArray:
 
 
 def sides(contacts: Contacts) -> tuple[tuple[IntArray, FloatArray], tuple[IntArray, FloatArray]]:
-    """Of a and then of b the numbers (m,), and the middle between the contact points as that body sees it where it is
-    itself, (m, d) [length]."""
+    """The number (m,) of a, then of b, and the middle between the contact points as the body itself sees it and not its
+    image, (m, d) [length]."""
     both = middle(contacts)
     return (contacts.body_a, both), (contacts.body_b, both if contacts.shift is None else both - contacts.shift)
 

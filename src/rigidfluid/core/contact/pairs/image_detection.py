@@ -69,7 +69,7 @@ class ImageDetection:
         images = self._within(cells, wrapped, reach)
         position = np.concatenate([wrapped, wrapped[images.body] + self._lattice.displacement(images.offset)])
         orientation = np.concatenate([pose.orientation, pose.orientation[images.body]])
-        return self._of_bodies(images.detector.detect(Pose(position, orientation), None, reach), images)
+        return self._between_bodies(images.detector.detect(Pose(position, orientation), None, reach), images)
 
     def _within(self, cells: IntArray, wrapped: FloatArray, reach: float) -> _Images:
         """Images that may be within ``reach`` of a body, and some more."""
@@ -95,7 +95,7 @@ class ImageDetection:
         detector = self._make([*self._bodies, *(self._bodies[number] for number in which)], walls)
         return _Images(which, np.concatenate(offset), cells, wrapped, reach, detector)
 
-    def _of_bodies(self, found: Contacts, images: _Images) -> Contacts:
+    def _between_bodies(self, found: Contacts, images: _Images) -> Contacts:
         """Contacts of bodies where they are, by those of bodies in the first cell with each other and with images."""
         count = len(self._bodies)
         index = np.concatenate([np.arange(count), images.body])
