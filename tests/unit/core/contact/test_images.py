@@ -20,6 +20,7 @@ from rigidfluid.core.contact.pairs.image_detection import ImageDetection
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.lattice import Lattice
 from rigidfluid.core.model.part import PartOptions
+from rigidfluid.core.model.state import State
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.output.checkpoint import read_checkpoint
 from rigidfluid.core.scene.scene import Scene
@@ -251,3 +252,24 @@ def test_a_check_tells_of_a_gap_across_a_seam():
     told = {row.name: row for row in check(scene).bodies}
     assert told["one"].smallest_gap == pytest.approx(0.02)
     assert told["one"].nearest == "two"
+
+
+def test_prescribed_joined_and_composed_bodies_cross_seams():
+    """As in the middle of the domain: a driven disk pushes a hinged pair, which pushes a mechanism of two disks."""
+
+    def end(shift: float) -> State:
+        def at(x: float, y: float, **keys: Any) -> Table:
+            return {"type": "sphere", "radius": 0.06, "density": 1.0, "position": [x + shift, y]} | keys
+
+        driven = at(0.2, 0.5, radius=0.05, prescribed={"velocity": [0.5, 0.0]})
+        pair = at(0.35, 0.52, name="one"), at(0.5, 0.5, name="other")
+        hinge = {"type": "hinge", "between": ["one", "other"], "at": [0.425 + shift, 0.51]}
+        parts = [at(-shift, 0.0, name="left"), at(0.13 - shift, 0.0, name="right")]
+        both = {"type": "articulated", "name": "both", "position": [0.72 + shift, 0.5], "component": parts}
+        tables = dry_tables(*(driven, *pair), contact=ELASTIC, boundary=periodic(0), joint=[hinge], end=0.6, step=0.01)
+        return run_to_end(scene_from_dict(tables | {"mechanism": [both]}))
+
+    middle, across = end(0.0), end(0.4)
+    assert np.all(np.linalg.norm(middle.twist.velocity, axis=1) > 0.05)
+    np.testing.assert_allclose(across.pose.position - [0.4, 0.0], middle.pose.position, rtol=0, atol=1e-11)
+    np.testing.assert_allclose(across.pose.orientation, middle.pose.orientation, rtol=0, atol=1e-10)
