@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -16,9 +17,12 @@ import rigidfluid
 from rigidfluid.checks.report import check
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
+from rigidfluid.core.contact.pairs.extrapolated_contacts import ExtrapolatedContacts
 from rigidfluid.core.contact.pairs.image_detection import ImageDetection
+from rigidfluid.core.contact.pairs.proximity import detect, detect_contacts_and_gaps
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.lattice import Lattice
+from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.types import Pose
@@ -185,6 +189,13 @@ def test_all_images_are_found_and_no_memory_shows(dimension):
         for name in type(found).__slots__:
             np.testing.assert_array_equal(getattr(found, name), getattr(fresh, name))
     assert 2 < len(made) < 40
+    cells = random.integers(-2, 3, (count, 2))
+    elsewhere = kept.detect(Pose(position + lattice.displacement(cells), pose.orientation), 0.5)
+    for name in ("body_a", "body_b"):
+        np.testing.assert_array_equal(getattr(elsewhere, name), getattr(found, name))
+    np.testing.assert_allclose(elsewhere.gap, found.gap, rtol=0, atol=1e-13)  # in the same order
+    apart = lattice.displacement(cells[found.body_a] - cells[found.body_b])
+    np.testing.assert_allclose(elsewhere.shift, found.shift + apart, rtol=0, atol=1e-12)
     pairs = naive_pairs(position, lattice, 0.5 + 0.14)
     shown = {(a, b, *np.round(away, 9)) for a, b, away in zip(found.body_a, found.body_b, found.shift, strict=True)}
     assert shown == pairs
@@ -193,6 +204,36 @@ def test_all_images_are_found_and_no_memory_shows(dimension):
     other = position[found.body_b] + found.shift
     np.testing.assert_allclose(np.linalg.norm(position[found.body_a] - other, axis=1) - 0.14, found.gap, atol=1e-12)
     np.testing.assert_allclose(found.point_b, other + 0.07 * found.normal, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_contacts_that_are_carried_along_stay_with_their_image(dimension):
+    balls, moved = gas(dimension), np.random.default_rng(1).uniform(-0.01, 0.01, (20, dimension))
+    system = build_system(boxed(balls, ELASTIC, tuple(range(dimension))))
+    found = detect(system, system.pose, None, 0.2)
+    assert np.count_nonzero(found.shift.any(axis=1)) > 5
+    there = replace(system.pose, position=system.pose.position + moved)
+    carried, expected = ExtrapolatedContacts(found, system.pose).extrapolate(there), detect(system, there, None, 0.3)
+    pairs, others = (
+        np.rint(each.shift @ [1.0, 10.0, 100.0][:dimension] + 1e4 * each.body_a + 1e6 * each.body_b)
+        for each in (carried, expected)
+    )
+    expected = select(expected, np.isin(others, pairs))
+    for name in ("gap", "point_a", "point_b", "normal", "shift"):
+        np.testing.assert_allclose(getattr(carried, name), getattr(expected, name), rtol=0, atol=1e-12)
+
+
+def test_joined_bodies_meet_images_of_each_other_alone():
+    disks = [
+        {"type": "sphere", "radius": 0.2, "density": 1.0, "name": name, "position": [x, 0.5]}
+        for name, x in (("one", 0.3), ("other", 0.75))
+    ]
+    hinge = {"type": "hinge", "between": ["one", "other"], "at": [0.52, 0.5]}
+    system = build_system(boxed(disks, ELASTIC, (0,), joint=[hinge]))
+    contacts, gaps = detect_contacts_and_gaps(system, system.pose, None)
+    np.testing.assert_array_equal(contacts.shift[~contacts.at_wall], [[-1.0, 0.0]])
+    assert contacts.gap[~contacts.at_wall] == pytest.approx([0.15])
+    assert gaps == pytest.approx([0.05, 0.05])
 
 
 def naive_pairs(position: FloatArray, lattice: Lattice, distance: float) -> set[tuple[Any, ...]]:
