@@ -20,6 +20,7 @@ from rigidfluid.core.case.system import build_system
 from rigidfluid.core.contact.pairs.extrapolated_contacts import ExtrapolatedContacts
 from rigidfluid.core.contact.pairs.image_detection import ImageDetection
 from rigidfluid.core.contact.pairs.proximity import detect, detect_contacts_and_gaps
+from rigidfluid.core.contact.pairs.tracked_pairs import TrackedPairs
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.lattice import Lattice
 from rigidfluid.core.model.contacts import select
@@ -29,7 +30,7 @@ from rigidfluid.core.model.types import Pose
 from rigidfluid.core.output.checkpoint import read_checkpoint
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.detectors.sphere import SphereDetector
-from rigidfluid.errors import SceneError, StepError
+from rigidfluid.errors import SceneError, StepError, StepRejected
 
 Table = dict[str, Any]
 
@@ -223,13 +224,27 @@ def test_contacts_that_are_carried_along_stay_with_their_image(dimension):
         np.testing.assert_allclose(getattr(carried, name), getattr(expected, name), rtol=0, atol=1e-12)
 
 
-def test_joined_bodies_meet_images_of_each_other_alone():
-    disks = [
-        {"type": "sphere", "radius": 0.2, "density": 1.0, "name": name, "position": [x, 0.5]}
-        for name, x in (("one", 0.3), ("other", 0.75))
+def large_disks() -> list[Table]:
+    """Two, .05 apart, and .15 across a seam."""
+    places = {"one": [0.3, 0.5], "other": [0.75, 0.5]}
+    return [
+        {"type": "sphere", "radius": 0.2, "density": 1.0, "name": name, "position": places[name]} for name in places
     ]
+
+
+def test_an_image_that_was_not_foreseen_is_told_from_one_that_was():
+    system = build_system(boxed(large_disks(), ELASTIC, (0,)))
+    tracked = TrackedPairs(system, system.pose, 0.1)
+    at_pair = tracked.start.gap[~tracked.start.at_wall]
+    assert at_pair == pytest.approx([0.05])
+    there = replace(system.pose, position=system.pose.position + [[0.0, 0.0], [0.145, 0.0]])
+    with pytest.raises(StepRejected, match="not foreseen"):
+        tracked.extrapolate(there)
+
+
+def test_joined_bodies_meet_images_of_each_other_alone():
     hinge = {"type": "hinge", "between": ["one", "other"], "at": [0.52, 0.5]}
-    system = build_system(boxed(disks, ELASTIC, (0,), joint=[hinge]))
+    system = build_system(boxed(large_disks(), ELASTIC, (0,), joint=[hinge]))
     contacts, gaps = detect_contacts_and_gaps(system, system.pose, None)
     np.testing.assert_array_equal(contacts.shift[~contacts.at_wall], [[-1.0, 0.0]])
     assert contacts.gap[~contacts.at_wall] == pytest.approx([0.15])

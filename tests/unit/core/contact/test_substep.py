@@ -20,6 +20,7 @@ from rigidfluid.forces.normal import NormalLaw
 from rigidfluid.forces.spring_dashpot import SpringDashpotLaw
 
 MASS, RADIUS, RANGE = np.array([2.0, 3.0]), 0.5, 0.1
+NONE = np.zeros(2, dtype=bool)
 INVERSE = float(np.sum(1.0 / MASS))
 BALLS = Reach(np.zeros(2), np.zeros(2))
 
@@ -37,8 +38,7 @@ def balls(gap: float, velocity: FloatArray, weight: float = 0.0, spin: FloatArra
     pose = Pose(np.array([[gap + RADIUS, 0.0], [-RADIUS, 0.0]]), np.zeros((2, 1)))
     turning = np.zeros((2, 1)) if spin is None else spin
     pull = np.array([[-weight, 0.0], [0.0, 0.0]])
-    none = np.zeros(2, dtype=bool)
-    return DryDynamics(pose, Twist(velocity, turning), MASS, np.ones((2, 1, 1)), pull, none, lambda _: np.zeros(0))
+    return DryDynamics(pose, Twist(velocity, turning), MASS, np.ones((2, 1, 1)), pull, NONE, lambda _: np.zeros(0))
 
 
 def spring(stiffness: float, **keys: float) -> ForceLaw:
@@ -140,7 +140,13 @@ def test_what_slides_past_has_the_energy_that_turning_takes_from_it() -> None:
     share = 1.0 - ((2.0 * RADIUS + gap) / (2.0 * RADIUS + RANGE)) ** 2
     stored = (RANGE - gap) ** 3 / 3e-4
     depth = float(np.cbrt(3e-4 * (stored + 0.5 * speed**2 / INVERSE * share)))
-    assert_resolved(law, gap, balls(gap, np.array([[0.0, speed], [0.0, 0.0]])), rate_at(depth, 1e-4))
+    body = balls(gap, np.array([[0.0, speed], [0.0, 0.0]]))
+    assert_resolved(law, gap, body, rate_at(depth, 1e-4))
+    image = replace(touching(gap), shift=np.array([[-7.0, 2.0]]))
+    there = replace(body.pose, position=body.pose.position - [[0.0, 0.0], [-7.0, 2.0]])
+    across = DryDynamics(there, body.twist, MASS, np.ones((2, 1, 1)), np.zeros((2, 2)), NONE, lambda _: np.zeros(0))
+    found = [plan(law, *each, BALLS, 1.0, 1.0).substep for each in ((touching(gap), body), (image, across))]
+    assert found[1] == pytest.approx(found[0], rel=1e-9)
 
 
 def test_nothing_touches_before_bodies_have_come_to_range() -> None:
