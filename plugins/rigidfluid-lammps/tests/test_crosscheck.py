@@ -11,7 +11,7 @@ import pytest
 from dry_scenes import ball, dry_scene
 from rubbing_balls import RANGE, SPRING, STICKS_AND_SLIPS, TANGENTIAL_STIFFNESS, hard_to_turn, oblique_hit
 
-from rigidfluid.api import Pose, Scene, StepError, build_system
+from rigidfluid.api import Pose, Scene, StepError, build_system, scene_from_dict
 from rigidfluid_lammps import CrosscheckError, Row, crosscheck
 from rigidfluid_lammps import library as lammps_library
 from rigidfluid_lammps.kinds import kinds
@@ -233,3 +233,44 @@ def test_missing_mpi_is_reported_with_its_hint(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(lammps_library, "_MPI", "libmpi_that_is_not_there.so")
     with pytest.raises(CrosscheckError, match=r"lammps\[mpi\]"):
         crosscheck(dry_scene({}, ball([0.5, 0.5], [0.0, 0.0]), end=0.1, step=0.01))
+
+
+def between_periodic_surfaces(scene: Scene) -> Scene:
+    """The scene with all surfaces of its box periodic."""
+    sides = ("left", "right", "bottom", "top", "back", "front")[: 2 * scene.dimension]
+    return scene_from_dict(scene.to_dict() | {"boundary": [{"on": side, "type": "periodic"} for side in sides]})
+
+
+@needs_lammps
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("contact", [conservative("centre"), SPRING | {"restitution": 0.7}], ids=["centre", "spring"])
+def test_balls_cross_periodic_surfaces_alike(contact: dict[str, Any], dimension: int) -> None:
+    """Those of a gas around a corner, where some start in other images of the domain."""
+    random = np.random.default_rng(7)
+    places = np.stack(np.meshgrid(*[[0.9, 1.1]] * dimension, indexing="ij"), axis=-1).reshape(-1, dimension)
+    places = places + random.uniform(-0.02, 0.02, places.shape)
+    velocities = 10.0 * random.normal(size=places.shape)
+    balls = [
+        ball(place, velocity, radius=0.05 + 0.02 * (number % 2))
+        for number, (place, velocity) in enumerate(zip(places.tolist(), velocities.tolist(), strict=True))
+    ]
+    balls[0]["position"][0] += 2.0
+    scene = between_periodic_surfaces(dry_scene(contact, *balls, end=0.1, step=1e-5))
+    comparison = crosscheck(scene, steps=1, samples=50)
+    assert np.any(np.ptp(np.floor(comparison.ours.position), axis=0) > 0.0)
+    turned = np.abs(np.diff(comparison.ours.velocity, axis=0)).max(axis=(0, 2)) > 0.1
+    assert np.count_nonzero(turned) >= 3
+    assert_agrees(comparison.rows[0], tolerance=1e-9)
+
+
+@needs_lammps
+def test_sliding_friction_across_a_seam_turns_disks_alike() -> None:
+    bodies = (
+        ball([0.85, 0.98], [10.0, 0.0], angular_velocity=200.0),
+        ball([0.15, 0.03], [-10.0, 0.0], angular_velocity=150.0, density=2.0),
+    )
+    scene = between_periodic_surfaces(dry_scene(RUBBING, *bodies, end=0.013, step=1e-5))
+    comparison = crosscheck(scene, steps=1, samples=50)
+    assert np.ptp(comparison.ours.spin[:, 0]) > 1.0
+    assert_agrees(comparison.rows[0])
+    assert comparison.rows[0].spin <= 1e-8 * 200.0

@@ -17,6 +17,7 @@ class Dry(FluidBackend):
     name: ClassVar[str] = "dry"
     wet: ClassVar[bool] = False
     exchanges_bodies: ClassVar[bool] = True
+    periodic_faces: ClassVar[bool] = True
 
     def initial(self, mesh: Mesh, pose: Pose, twist: Twist) -> tuple[FluidState, float]:
         """An empty state without energy."""

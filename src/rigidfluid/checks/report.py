@@ -98,7 +98,7 @@ def check(case: Case) -> Report:
     with no_exit(), told_memory():
         model = model_of(case)
         system = assemble(model)
-        start = initial_contacts(system.domain, model.exact_detector, system.bodies, system.pose, gap_reach(system))
+        start = initial_contacts(model, system.pose, gap_reach(system))
         spot_check(system, system.pose, None, 0)
         found = sorted(findings(model, system, start), key=lambda finding: GRADES.index(finding.grade))
         rows = (

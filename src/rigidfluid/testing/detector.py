@@ -13,6 +13,7 @@ import pytest
 from rigidfluid.core.contact.path.detection import detection_by
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.piece import Piece
+from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.types import Contacts
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
@@ -281,11 +282,11 @@ def _swapped(contacts: Contacts, arrangement: Arrangement) -> Contacts:
         at_wall=contacts.at_wall,
     )
     order = np.lexsort((swapped.body_b, swapped.body_a))
-    return Contacts(*(getattr(swapped, name)[order] for name in Contacts.__slots__))
+    return select(swapped, order)
 
 
 def _check_empty(contacts: Contacts, dimension: int) -> None:
-    for name in Contacts.__slots__:
+    for name in (field for field in Contacts.__slots__ if field != "shift"):
         wide = name in ("point_a", "point_b", "normal")
         assert getattr(contacts, name).shape == ((0, dimension) if wide else (0,)), name
 

@@ -9,9 +9,10 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
-from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import moment
 from rigidfluid.core.mechanics.wrenches import contact_wrench
+from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.types import Contacts, Motion, Pose
 from rigidfluid.errors import StepRejected
@@ -208,7 +209,7 @@ class ForceLawContract:
         motion = _motion(contacts)
         order = np.random.default_rng(7).permutation(len(contacts))[: len(contacts) // 2]
         for chosen in (order, order[:0]):
-            some, moving = _taken(contacts, chosen), motion.select(chosen)
+            some, moving = select(contacts, chosen), motion.select(chosen)
             for column in (law.force, law.energy, law.stiffness):
                 np.testing.assert_allclose(column(some), column(contacts)[chosen], rtol=1e-14)
             np.testing.assert_allclose(law.damping(some, moving), law.damping(contacts, motion)[chosen], rtol=1e-14)
@@ -218,7 +219,7 @@ class ForceLawContract:
         contacts = self.make_contacts(law.range * np.array(fractions), dimension)
         if law.acts_in == "all":
             return contacts
-        return _taken(contacts, np.flatnonzero(contacts.at_wall == (law.acts_in == "walls")))
+        return select(contacts, np.flatnonzero(contacts.at_wall == (law.acts_in == "walls")))
 
     def _rounding(self, law: ForceLaw, force: FloatArray) -> float:
         """Rounding of slopes, which a force that is zero in part of the range is compared with."""
@@ -229,7 +230,7 @@ class ForceLawContract:
 
     def _pairs_of(self, law: ForceLaw, dimension: int) -> Contacts:
         contacts = self._contacts_of(law, self.gap_fractions, dimension)
-        return _taken(contacts, np.flatnonzero(~contacts.at_wall))
+        return select(contacts, np.flatnonzero(~contacts.at_wall))
 
 
 def _needs_energy(law: ForceLaw) -> None:
@@ -301,10 +302,6 @@ def _slope(column: Column, contacts: Contacts, law_range: float) -> FloatArray:
 def _moved(contacts: Contacts, distance: FloatArray) -> Contacts:
     point_a = contacts.point_a + distance[:, None] * contacts.normal
     return replace(contacts, point_a=point_a, gap=contacts.gap + distance)
-
-
-def _taken(contacts: Contacts, chosen: IntArray) -> Contacts:
-    return Contacts(*(getattr(contacts, field)[chosen] for field in Contacts.__slots__))
 
 
 def _assert_close(found: FloatArray, expected: FloatArray) -> None:

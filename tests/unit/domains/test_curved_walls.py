@@ -28,6 +28,7 @@ from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_mesh
 from rigidfluid.core.model.contact_results import refuse_odd
+from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Mesh, Motion, Pose
@@ -66,7 +67,7 @@ def balls_near_the_rim(dimension: int) -> tuple[list[Any], Pose]:
 def at_walls(detector: Detector, pose: Pose, reach: float = np.inf) -> Contacts:
     found = detector.detect(pose, None, reach)
     assert np.array_equal(found.at_wall, found.body_b == len(detector.bodies))
-    return Contacts(*(getattr(found, name)[found.at_wall] for name in Contacts.__slots__))
+    return select(found, found.at_wall)
 
 
 def enclosed_by_the_rim(mesh: Mesh) -> float:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rigidfluid.api import FloatArray, Pose, SpringDashpotLaw, System, require_plane
+from rigidfluid.api import FloatArray, IntArray, Pose, SpringDashpotLaw, System, require_plane
 from rigidfluid_lammps.kinds import Kinds, kinds, radii
 from rigidfluid_lammps.library import lammps_session
 from rigidfluid_lammps.samples import Sample, Samples
@@ -67,10 +67,12 @@ def _create_bodies(engine: Any, system: System, sorts: Kinds) -> None:
     position, velocity, spin = np.zeros((3, len(bodies), 3))
     position[:, :d], velocity[:, :d] = system.pose.position[bodies], system.twist.velocity[bodies]
     position[count:, 0] += 0.5 * radii(system)[ballast]
+    cells = _cells(system, position)
+    position -= cells * _lengths(system)
     spin[:, 3 - system.twist.angular_velocity.shape[1] :] = system.twist.angular_velocity[bodies]
-    engine.create_atoms(
-        len(bodies), numbers.tolist(), types.tolist(), position.ravel().tolist(), velocity.ravel().tolist()
-    )
+    columns = (column.ravel().tolist() for column in (position, velocity))
+    images = [engine.encode_image_flags(*cell) for cell in cells.tolist()]
+    engine.create_atoms(len(bodies), numbers.tolist(), types.tolist(), *columns, images)
     here = np.argsort(np.argsort(engine.numpy.extract_atom("id")[: len(bodies)]))
     engine.numpy.extract_atom("radius")[: len(bodies)] = size[here]
     engine.numpy.extract_atom("rmass")[: len(bodies)] = system.mass[bodies[here]]
@@ -82,6 +84,8 @@ def _sample(engine: Any, system: System, sorts: Kinds) -> Sample:
     here = engine.extract_global("nlocal")
     order = np.argsort(engine.numpy.extract_atom("id")[:here])[:count]
     position, velocity, spin = (engine.numpy.extract_atom(name)[order] for name in ("x", "v", "omega"))
+    images = engine.numpy.extract_atom("image")[order]
+    position = position + [engine.decode_image_flags(int(image)) for image in images] * _lengths(system)
     spin = spin[:, 3 - system.twist.angular_velocity.shape[1] :]
     normals = [require_plane(wall, "lammps").unit_normal for wall in system.walls]
     if isinstance(system.law, SpringDashpotLaw):
@@ -93,9 +97,24 @@ def _sample(engine: Any, system: System, sorts: Kinds) -> Sample:
     return Sample(position[:, :d], velocity[:, :d], spin, stored, np.array(pushed))
 
 
+def _lengths(system: System) -> FloatArray:
+    """Distances of periodic surfaces along each axis, zero where there are none, (3,) [length]."""
+    lengths = np.abs(system.lattice.vectors).sum(axis=0)
+    return np.append(lengths, np.zeros(3 - len(lengths)))
+
+
+def _cells(system: System, position: FloatArray) -> IntArray:
+    """Images of the domain along each axis that points (N, 3) are in, (N, 3)."""
+    cells, d = np.zeros(position.shape, dtype=np.int64), system.dimension
+    crossed = np.flatnonzero(system.lattice.vectors.any(axis=0))
+    low, high = system.domain.extent
+    cells[:, crossed] = np.floor((position[:, :d] - low) / (high - low))[:, crossed].astype(np.int64)
+    return cells
+
+
 def _spring_energy(system: System, law: SpringDashpotLaw, position: FloatArray) -> float:
     """Energy of the springs at LAMMPS' positions [energy]: it does not sum that of granular contacts itself."""
-    contacts = system.detector.detect(Pose(position, system.pose.orientation), None, law.range)
+    contacts = system.detection.detect(Pose(position, system.pose.orientation), None, law.range)
     return float(np.sum(law.energy(contacts)))
 
 

@@ -37,13 +37,14 @@ def ballast_type(kinds: Kinds) -> int:
 
 
 def set_up(system: System, kinds: Kinds) -> Iterator[str]:
-    """Commands before the bodies are there: a box that grows where they leave, and a type for each kind."""
+    """Commands before the bodies are there: a box, periodic or growing where they leave, and a type for each kind."""
     low, high = system.domain.extent
     lower, upper = _three(low, -0.5), _three(high, 0.5)
-    periodic = "p" if system.dimension == 2 else "m"
+    crossed = np.any(system.lattice.vectors, axis=0).tolist()
+    boundary = "".join("p" if along else "m" for along in crossed) + "p" * (3 - system.dimension)
     yield "units lj"
     yield f"dimension {system.dimension}"
-    yield f"boundary m m {periodic}"
+    yield f"boundary {' '.join(boundary)}"
     yield "atom_style sphere"
     yield "atom_modify map array"
     yield "comm_modify vel yes"

@@ -150,6 +150,7 @@ def _check_remaining(data: Mapping[str, Any], refused: Sequence[str], registry: 
         bodies = [ask(scene_body, table, f"body.{n}", registry, scene.dimension) for n, table in enumerate(scene.body)]
         if domain is not None:
             ask(check_surface_names, scene.boundary, domain)
+        if domain is not None and not any(table.type == "periodic" for table in scene.boundary):
             ask(check_made_bodies, domain, bodies, mechanisms or (), registry)
 
 

@@ -9,8 +9,11 @@ from numba import njit
 
 
 @njit(cache=True)
-def accumulate(force, torque, position, body_a, point_a, body_b, point_b, force_on_a):
-    """Add +F at a, then -F at b, in the order of the contacts, so that a sum does not depend on how it is made."""
+def accumulate(force, torque, position, body_a, point_a, body_b, point_b, shift, force_on_a):
+    """Add +F at a, then -F at b, in the order of the contacts, so that a sum does not depend on how it is made.
+
+    The image of b that is met is displaced by ``shift`` (m, d) from b, None for zero.
+    """
     for side in range(2):
         sign = 1.0 if side == 0 else -1.0
         for i in range(len(body_a)):
@@ -19,6 +22,9 @@ def accumulate(force, torque, position, body_a, point_a, body_b, point_b, force_
                 continue
             x = 0.5 * (point_a[i, 0] + point_b[i, 0]) - position[body, 0]
             y = 0.5 * (point_a[i, 1] + point_b[i, 1]) - position[body, 1]
+            if shift is not None and side == 1:
+                x -= shift[i, 0]
+                y -= shift[i, 1]
             u, v = sign * force_on_a[i, 0], sign * force_on_a[i, 1]
             force[body, 0] += u
             force[body, 1] += v
@@ -27,6 +33,8 @@ def accumulate(force, torque, position, body_a, point_a, body_b, point_b, force_
                 torque[body, 0] += turning
             else:
                 z, w = 0.5 * (point_a[i, 2] + point_b[i, 2]) - position[body, 2], sign * force_on_a[i, 2]
+                if shift is not None and side == 1:
+                    z -= shift[i, 2]
                 force[body, 2] += w
                 torque[body, 0] += y * w - z * v
                 torque[body, 1] += z * u - x * w

@@ -13,7 +13,7 @@ def contact_wrench(
     contacts: Contacts, force_on_a: FloatArray, pose: Pose, couple_on_a: FloatArray | None = None
 ) -> Wrench:
     """Net wrench of all contacts on each of the n bodies, +F on a and -F on b, both at X = (X_a + X_b)/2, torque (X -
-    x) × F + C on a and the opposite on b; the wrench on walls is dropped.
+    x) × F + C on a and the opposite on b, whose x is that of the image met; the wrench on walls is dropped.
 
     The common point X keeps the total angular momentum, for forces along the surfaces as well. ``force_on_a`` is F on
     ``body_a`` (m, d) [force], ``couple_on_a`` C (m, k), None for none [force·length].
@@ -23,7 +23,7 @@ def contact_wrench(
         from rigidfluid.core.mechanics.contact_sum import accumulate, accumulate_couples
 
         a, b = (contacts.body_a, contacts.point_a), (contacts.body_b, contacts.point_b)
-        accumulate(wrench.force, wrench.torque, pose.position, *a, *b, force_on_a)
+        accumulate(wrench.force, wrench.torque, pose.position, *a, *b, contacts.shift, force_on_a)
         if couple_on_a is not None:
             accumulate_couples(wrench.torque, contacts.body_a, contacts.body_b, couple_on_a)
     return wrench

@@ -3,7 +3,8 @@ there."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -13,12 +14,20 @@ from rigidfluid.core.model.types import Contacts
 
 def select(contacts: Contacts, chosen: IntArray | BoolArray) -> Contacts:
     """Contacts in the rows ``chosen``, (k,) numbers in the order wanted or (m,) truth values."""
-    return Contacts(*(getattr(contacts, field)[chosen] for field in Contacts.__slots__))
+    columns = (getattr(contacts, name) for name in Contacts.__slots__)
+    taken: Iterator[Any] = (None if column is None else column[chosen] for column in columns)
+    return Contacts(*taken)
 
 
 def joined(parts: Sequence[Contacts]) -> Contacts:
     """All contacts of at least one part, part by part."""
-    return Contacts(*(np.concatenate([getattr(part, field) for part in parts]) for field in Contacts.__slots__))
+    columns: Iterator[Any] = ([getattr(part, field) for part in parts] for field in Contacts.__slots__)
+    return Contacts(*map(_in_one, columns))
+
+
+def _in_one(columns: Sequence[Any]) -> Any:
+    """One column of several, or None where nothing is given."""
+    return None if columns[0] is None else np.concatenate(columns)
 
 
 def in_order(parts: Sequence[Contacts]) -> Contacts:
@@ -30,6 +39,18 @@ def in_order(parts: Sequence[Contacts]) -> Contacts:
 def middle(contacts: Contacts) -> FloatArray:
     """Middle between the contact points, (m, d) [length]."""
     return np.asarray(0.5 * (contacts.point_a + contacts.point_b))
+
+
+def points_of_b(contacts: Contacts) -> FloatArray:
+    """Points on b itself and not on the image of it that is met, (m, d) [length]."""
+    return contacts.point_b if contacts.shift is None else contacts.point_b - contacts.shift
+
+
+def sides(contacts: Contacts) -> tuple[tuple[IntArray, FloatArray], tuple[IntArray, FloatArray]]:
+    """The number (m,) of a, then of b, and the middle between the contact points as the body itself sees it and not its
+    image, (m, d) [length]."""
+    both = middle(contacts)
+    return (contacts.body_a, both), (contacts.body_b, both if contacts.shift is None else both - contacts.shift)
 
 
 def normal_part(vectors: FloatArray, contacts: Contacts) -> FloatArray:

@@ -45,8 +45,9 @@ class Detection(ABC):
         """The mesh that it looks at when the bodies are at ``pose``: what ``make`` makes, or one without cells."""
 
     @abstractmethod
-    def on_shapes(self, contacts: Contacts, pose: Pose) -> Contacts:
-        """Contacts that the detector found at ``pose``, those of balls between the round shapes themselves."""
+    def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
+        """All contacts with gap ≤ ``reach`` [length], sorted by (body_a, body_b), those of balls between the round
+        shapes themselves; reach may be infinite."""
 
     @abstractmethod
     def look_ahead(self, near: FollowedContacts, dynamics: BodyDynamics, size: float) -> Sight:

@@ -13,6 +13,7 @@ from rigidfluid.core.geometry.answers import anything, instance, number, optiona
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.facets import Facets
 from rigidfluid.core.geometry.guarded import gives
+from rigidfluid.core.geometry.lattice import Lattice
 from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.model import part_answers as parts
 from rigidfluid.core.model.part import SpatialPart
@@ -80,6 +81,34 @@ class Domain(SpatialPart):
         other = copy(self)
         other.periodic = pairs
         return other
+
+    @property
+    def lattice(self) -> FloatArray:
+        """Displacements from the first to the second piece of each periodic pair, (k, d) [length]."""
+        planes = [[self.pieces[number].shape.plane for number in pair] for pair in self.periodic]
+        ways = [
+            float((two.point - one.point) @ one.unit_normal) * one.unit_normal for one, two in planes if one and two
+        ]
+        return np.array(ways, dtype=float).reshape(-1, self.dimension)
+
+    def wrapped(self, points: FloatArray) -> FloatArray:
+        """Images of ``points`` (N, d) between the periodic surfaces, (N, d) [length]: bodies leave by one and go on.
+
+        They are the points themselves where no surface is periodic.
+        """
+        return self.cells.wrapped(points)
+
+    @property
+    def cells(self) -> Lattice:
+        """The lattice that the periodic surfaces make, with the domain in its first cell."""
+        vectors = self.lattice
+        forward = np.where(vectors.sum(axis=1) < 0.0, -1.0, 1.0)
+        return Lattice(forward[:, None] * vectors, self.extent[0])
+
+    def crossed(self, wet: bool) -> Lattice:
+        """The lattice by which bodies cross periodic surfaces: without vectors if there are none, or if it is ``wet``
+        around the bodies, as they do not leave a mesh."""
+        return Lattice(self.cells.vectors[:0], self.extent[0]) if wet else self.cells
 
     def called(self, names: Collection[str]) -> Self:
         """The same domain, each of its pieces under its other name where that is among the ``names``."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.lattice import Lattice
 from rigidfluid.core.geometry.wall import Wall, WallVelocities
 from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.detection import Detection
@@ -95,6 +96,11 @@ class System:
     def has_fluid(self) -> bool:
         """Tell whether there is a fluid around the bodies."""
         return self.fluid is not None
+
+    @cached_property
+    def lattice(self) -> Lattice:
+        """The lattice by which bodies meet images of each other: none in a fluid, where no body may reach a seam."""
+        return self.domain.crossed(self.backend_type.wet)
 
     @property
     def law_range(self) -> float:

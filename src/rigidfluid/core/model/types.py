@@ -67,6 +67,8 @@ class Contacts:
     where not known; ``at_wall`` (m,): whether b is a wall. ``effective_radius`` (m,): of the ball at a flat wall that
     squeezes a thin film alike, from the radii if not given, NaN where not known [length]. ``sign`` (m,): 1, which is
     taken if it is not given, or -1 of a contact whose energy and forces are taken away, as others count them twice.
+    ``shift`` (m, d): displacement of b's image that is met from b itself, between periodic surfaces; None if there are
+    none, so that all are zero [length]. Points and normals are those of a and of that image.
     """
 
     body_a: IntArray
@@ -80,6 +82,7 @@ class Contacts:
     at_wall: BoolArray
     effective_radius: FloatArray = field(default_factory=lambda: _FROM_RADII)
     sign: FloatArray = field(default_factory=lambda: _POSITIVE)
+    shift: FloatArray | None = None
 
     def __post_init__(self) -> None:
         if self.sign is _POSITIVE:

@@ -47,7 +47,7 @@ _STATE: Shapes = {
         **dict.fromkeys(
             ("body_a", "body_b", "gap", "radius_a", "radius_b", "at_wall", "effective_radius", "sign"), "m"
         ),
-        **dict.fromkeys(("point_a", "point_b", "normal"), "md"),
+        **dict.fromkeys(("point_a", "point_b", "normal", "shift"), "md"),
     },
     "springs": {
         **dict.fromkeys(("body_a", "body_b", "stiffness"), "l"),

@@ -33,9 +33,12 @@ def stuck(system: System, state: State, rejection: StepRejected, time: float, sh
 
 
 def _near_openings(system: System, state: State) -> list[tuple[float, str, str]]:
-    """Gap, body and name of the surface, of each body and each surface that does not repel: those are in no contact."""
-    walls = {wall.name for wall in system.walls}
-    openings = [piece for piece in system.meshed(state.pose).pieces if piece.name not in walls]
+    """Gap, body and name of the surface, of each body and each surface that neither repels nor is crossed: those are in
+    no contact."""
+    passed = {wall.name for wall in system.walls}
+    if len(system.lattice.vectors):
+        passed |= {system.domain.names[number] for pair in system.domain.periodic for number in pair}
+    openings = [piece for piece in system.meshed(state.pose).pieces if piece.name not in passed]
     found = []
     for number, body in enumerate(system.bodies):
         points = to_world(state.pose, number, body.sample_surface(_SAMPLES))

@@ -8,8 +8,9 @@ from functools import cache, partial
 
 import numpy as np
 
-from rigidfluid.core.contact.path.detection import detection_by
+from rigidfluid.core.contact.path.detection import DetectionOfImages, detection_by
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.lattice import Lattice
 from rigidfluid.core.mechanics.mechanisms import CarriedBodies
 from rigidfluid.core.mechanics.rotational_factors import rotational_factors
 from rigidfluid.core.mechanics.single_bodies import SingleBodies
@@ -25,6 +26,7 @@ from rigidfluid.core.model.types import Pose, Twist
 from rigidfluid.core.nested.placing import initial_pose, initial_twist
 from rigidfluid.core.setup.contact_laws import interactions_of
 from rigidfluid.core.setup.geometry_checks import check_geometry
+from rigidfluid.core.setup.image_checks import check_lengths
 from rigidfluid.core.setup.impact import creeping_resistances
 from rigidfluid.core.setup.interaction_checks import check_interactions
 from rigidfluid.core.setup.joints import build_joints, joined_bodies
@@ -57,6 +59,7 @@ def assemble(model: Model, check: Callable[[Model, Pose], None] = check_geometry
     check_interactions(interactions, model.stepping, model.shapes, model.walls)
     chosen, why = model.detection
     detector, law = chosen.part(chosen.options, model.shapes, model.walls), acting_together(interactions)
+    check_lengths(model.shapes, model.crossed, law.range if law else 0.0)
     if law is not None and detector.signed:
         law = SignedLaw(law)
     backend = model.fluid.backend
@@ -83,9 +86,9 @@ def assemble(model: Model, check: Callable[[Model, Pose], None] = check_geometry
         backend_type=backend.part,
         make_backend=cache(partial(backend.part, backend.options, problem)),
         detector=detector,
-        detection_type=detection_by(chosen.part),
+        detection_type=DetectionOfImages if len(model.crossed.vectors) else detection_by(chosen.part),
         detector_why=why,
-        reach=_reach(detector, law),
+        reach=_reach(detector, law, model.crossed),
         rotational_factor=rotational_factors(model.shapes, motions, model.time.end),
         interactions=interactions,
         law=law,
@@ -131,22 +134,25 @@ def _least_resistance(model: Model) -> FloatArray | None:
     return creeping_resistances(model) if model.wet and not model.fluid.inertia else None
 
 
-def _reach(detector: Detector, law: ForceLaw | None) -> float:
+def _reach(detector: Detector, law: ForceLaw | None, crossed: Lattice) -> float:
     """Detection distance [length]: the detector's preferred reach, capped at the largest gap worth measuring."""
     law_range = law.range if law else 0.0
-    return min(detector.preferred_reach(law_range), _worth_measuring(detector.bodies, len(detector.walls), law_range))
+    worth = _worth_measuring(detector.bodies, len(detector.walls), law_range, crossed)
+    return min(detector.preferred_reach(law_range), worth)
 
 
 def gap_reach(system: System) -> float:
     """The largest gap that is worth measuring, whatever the detector sees [length]."""
-    return _worth_measuring(system.bodies, len(system.walls), system.law.range if system.law else 0.0)
+    law_range = system.law.range if system.law else 0.0
+    return _worth_measuring(system.bodies, len(system.walls), law_range, system.lattice)
 
 
-def _worth_measuring(bodies: Sequence[Body], walls: int, law_range: float) -> float:
-    """Among few bodies any gap; among many at most twice the largest body's size beyond the range.
+def _worth_measuring(bodies: Sequence[Body], walls: int, law_range: float, crossed: Lattice) -> float:
+    """Among few bodies any gap; among many, and where bodies have images, at most twice the largest body's size beyond
+    the range.
 
     So the work grows with the number of neighbours and not of pairs.
     """
-    if len(bodies) * (len(bodies) + walls) <= _MOST_PAIRS:
+    if len(bodies) * (len(bodies) + walls) <= _MOST_PAIRS and not len(crossed.vectors):
         return math.inf
     return law_range + 2.0 * max(body.bounding_radius for body in bodies)

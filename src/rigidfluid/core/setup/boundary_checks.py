@@ -10,6 +10,7 @@ from rigidfluid.core.fluid.conditions import Periodic, no_pressure
 from rigidfluid.core.mechanics.wall_velocity import WallVelocity
 from rigidfluid.core.setup.boundary_data import BoundaryData
 from rigidfluid.core.setup.boundary_samples import points_of, quadrature, sample_times, sampled_inflows
+from rigidfluid.core.setup.image_checks import check_crossed
 from rigidfluid.core.setup.opposite import is_opposite
 from rigidfluid.errors import SceneError
 
@@ -110,6 +111,8 @@ def check_periodic(model: Model) -> None:
     for other in oblique_conditions(model):
         found = f"'periodic' together with {other.type!r} on {other.name!r}, which does not lie across an axis"
         raise SceneError(at, found, "'wall' there", "Make it a wall, or do without periodic surfaces.")
+    if not model.wet:
+        check_crossed(model, at)
 
 
 def _check_pairs(model: Model) -> None:

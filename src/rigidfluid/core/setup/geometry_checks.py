@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 from math import sqrt
 from typing import TYPE_CHECKING
 
@@ -16,7 +17,6 @@ from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
     from rigidfluid.core.model.body import Body
-    from rigidfluid.core.model.detector import Detector
     from rigidfluid.core.model.domain import Domain
     from rigidfluid.core.scene.mesh_tables import MeshTable
     from rigidfluid.core.setup.model import Model
@@ -52,7 +52,7 @@ def check_places(placed: Arrangement, pose: Pose, reach: float = 0.0) -> Contact
     """Contacts with gaps up to ``reach`` [length]; raises SceneError for bodies that overlap each other or a surface of
     the domain, or are lost in it."""
     _check_extent(placed)
-    contacts = initial_contacts(placed.domain, placed.exact_detector, placed.shapes, pose, reach)
+    contacts = initial_contacts(placed, pose, reach)
     raise_together(list(_overlaps(placed, contacts)))
     return contacts
 
@@ -62,12 +62,19 @@ def surfaces_of(domain: Domain, bodies: int) -> tuple[Wall, ...]:
     return tuple(Wall(bodies + i, piece.name, piece.shape) for i, piece in enumerate(domain.pieces))
 
 
-def initial_contacts(
-    domain: Domain, detector: type[Detector], bodies: Sequence[Body], pose: Pose, reach: float
-) -> Contacts:
-    """Contacts of all bodies and surfaces of the domain, those that do not repel among them, with gaps up to ``reach``,
-    which may be infinite [length]; the ``detector`` needs no mesh."""
-    return detector(detector.Options(), bodies, surfaces_of(domain, len(bodies))).detect(pose, None, reach)
+def initial_contacts(placed: Arrangement, pose: Pose, reach: float) -> Contacts:
+    """Contacts of all bodies with each other and with surfaces of the domain, those that do not repel among them, but
+    with images instead of periodic surfaces that bodies cross, with gaps up to ``reach``, which may be infinite
+    [length]."""
+    bodies, walls = placed.shapes, surfaces_of(placed.domain, len(placed.shapes))
+    make = partial(placed.exact_detector, placed.exact_detector.Options())
+    if not len(placed.crossed.vectors):
+        return make(bodies, walls).detect(pose, None, reach)
+    from rigidfluid.core.contact.pairs.image_detection import ImageDetection
+
+    crossed = {number for pair in placed.domain.periodic for number in pair}
+    solid = [wall for number, wall in enumerate(walls) if number not in crossed]
+    return ImageDetection(make, bodies, solid, placed.crossed).detect(pose, reach)
 
 
 def _check_extent(placed: Arrangement) -> None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from rigidfluid.core.contact.path.detector_choice import exact_detector
+from rigidfluid.core.geometry.lattice import Lattice
 from rigidfluid.core.geometry.piece import all_names
 from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.detector import Detector
@@ -26,6 +27,16 @@ class Arrangement:
     bodies: tuple[RigidBody, ...]
     mechanisms: tuple[PlacedMechanism, ...]
     registry: Registry
+
+    @property
+    def wet(self) -> bool:
+        """Tell whether there is a fluid around the bodies, on a mesh, as there is if nothing else is known."""
+        return True
+
+    @property
+    def crossed(self) -> Lattice:
+        """The lattice by which bodies cross periodic surfaces, without vectors where they do not."""
+        return self.domain.crossed(self.wet)
 
     @property
     def dimension(self) -> int:
@@ -55,12 +66,18 @@ class Arrangement:
 
 @dataclass(frozen=True)
 class PlacedBodies(Arrangement):
-    """Bodies and mechanisms in a domain, with the parts that are installed."""
+    """Bodies and mechanisms in a domain, ``in_fluid`` or not, with the parts that are installed."""
 
     domain: Domain
     bodies: tuple[RigidBody, ...]
     mechanisms: tuple[PlacedMechanism, ...]
     registry: Registry
+    in_fluid: bool = True
+
+    @property
+    def wet(self) -> bool:
+        """Tell whether they are in a fluid."""
+        return self.in_fluid
 
 
 def check_names(placed: Arrangement) -> None:

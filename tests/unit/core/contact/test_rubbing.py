@@ -7,6 +7,7 @@ import pytest
 from scipy import sparse
 
 from rigidfluid.core.contact.path.implicit_friction import Rubbing, Slip, condensed, contacts_of_mean_force, rubbing
+from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.types import Contacts, Motion
 from rigidfluid.forces.spring_dashpot import SpringDashpotLaw, SpringDashpotOptions
 
@@ -153,7 +154,7 @@ def test_eliminated_forces_solve_the_whole_problem(dimension, width):
     forces alone and with couples beside them."""
     random, count = np.random.default_rng(5), 4
     contacts = contacts_of(dimension, random)
-    contacts = Contacts(*(getattr(contacts, name)[:count] for name in Contacts.__slots__))
+    contacts = select(contacts, np.arange(count))
     force, expected, rise, used = random.normal(size=(4, count, width))
     stiffness = random.uniform(size=(count, width, width))
     rub = Rubbing(force, expected, stiffness, rise, np.zeros_like(force))

@@ -20,6 +20,7 @@ from rigidfluid.forces.normal import NormalLaw
 from rigidfluid.forces.spring_dashpot import SpringDashpotLaw
 
 MASS, RADIUS, RANGE = np.array([2.0, 3.0]), 0.5, 0.1
+NONE = np.zeros(2, dtype=bool)
 INVERSE = float(np.sum(1.0 / MASS))
 BALLS = Reach(np.zeros(2), np.zeros(2))
 
@@ -37,19 +38,25 @@ def balls(gap: float, velocity: FloatArray, weight: float = 0.0, spin: FloatArra
     pose = Pose(np.array([[gap + RADIUS, 0.0], [-RADIUS, 0.0]]), np.zeros((2, 1)))
     turning = np.zeros((2, 1)) if spin is None else spin
     pull = np.array([[-weight, 0.0], [0.0, 0.0]])
-    none = np.zeros(2, dtype=bool)
-    return DryDynamics(pose, Twist(velocity, turning), MASS, np.ones((2, 1, 1)), pull, none, lambda _: np.zeros(0))
+    return DryDynamics(pose, Twist(velocity, turning), MASS, np.ones((2, 1, 1)), pull, NONE, lambda _: np.zeros(0))
 
 
 def spring(stiffness: float, **keys: float) -> ForceLaw:
     return SpringDashpotLaw(SpringDashpotLaw.Options(stiffness=stiffness, **keys), RANGE)  # type: ignore[arg-type]
 
 
-def assert_resolved(law: ForceLaw, gap: float, body: DryDynamics, rate: float, reach: Reach = BALLS) -> None:
+def assert_resolved(
+    law: ForceLaw,
+    gap: float,
+    body: DryDynamics,
+    rate: float,
+    reach: Reach = BALLS,
+    contacts: Contacts | None = None,
+) -> None:
     """Halvings are those of a step just too long, and just short enough, for so many of them."""
     for share, halvings in ((1.02, 6), (0.98, 5)):
         size = share * 2.0**5 * RESOLUTION / rate
-        found = plan(law, touching(gap), body, reach, size, size)
+        found = plan(law, contacts or touching(gap), body, reach, size, size)
         assert ceil(log2(size / found.substep) - 1e-9) == halvings
 
 
@@ -140,7 +147,12 @@ def test_what_slides_past_has_the_energy_that_turning_takes_from_it() -> None:
     share = 1.0 - ((2.0 * RADIUS + gap) / (2.0 * RADIUS + RANGE)) ** 2
     stored = (RANGE - gap) ** 3 / 3e-4
     depth = float(np.cbrt(3e-4 * (stored + 0.5 * speed**2 / INVERSE * share)))
-    assert_resolved(law, gap, balls(gap, np.array([[0.0, speed], [0.0, 0.0]])), rate_at(depth, 1e-4))
+    body = balls(gap, np.array([[0.0, speed], [0.0, 0.0]]))
+    assert_resolved(law, gap, body, rate_at(depth, 1e-4))
+    image = replace(touching(gap), shift=np.array([[-7.0, 2.0]]))
+    there = replace(body.pose, position=body.pose.position - [[0.0, 0.0], [-7.0, 2.0]])
+    across = DryDynamics(there, body.twist, MASS, np.ones((2, 1, 1)), np.zeros((2, 2)), NONE, lambda _: np.zeros(0))
+    assert_resolved(law, gap, across, rate_at(depth, 1e-4), contacts=image)
 
 
 def test_nothing_touches_before_bodies_have_come_to_range() -> None:

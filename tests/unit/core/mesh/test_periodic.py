@@ -169,8 +169,6 @@ def test_a_backend_without_periodic_faces_refuses_them_by_name() -> None:
     scene = channel()
     with pytest.raises(SceneError, match=r"boundary.0.type: found 'periodic' with backend 'dolfinx'"):
         with_backend(model_of(scene), Dolfinx)
-    with pytest.raises(SceneError, match=r"found 'periodic' with backend 'dry'"):
-        channel(fluid={"backend": "dry"}, mesh=None)
 
 
 def test_a_mesh_that_is_filled_between_facets_has_no_periodic_surfaces() -> None:

@@ -10,6 +10,9 @@ import scipy
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.geometry.wall import Wall
 
+SKIN = 0.6
+"""Distance beyond the reach up to which lists that are kept for some time are made, over the mean radius."""
+
 _FEW = 32
 """Number of balls up to which all pairs are looked at; a tree takes longer to load than a run of so few to start."""
 

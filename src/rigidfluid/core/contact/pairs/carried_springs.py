@@ -8,7 +8,7 @@ from rigidfluid.core.contact.pairs.body_points import body_arms, placed_points
 from rigidfluid.core.contact.pairs.same_contacts import PointPairs, distances, nearest_contacts, strictly_rising
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.contacts import points_of_b, select
 from rigidfluid.core.model.tangential_springs import TangentialSprings
 from rigidfluid.core.model.types import Contacts, Pose
 
@@ -46,7 +46,7 @@ def springs_at(
         near.body_a,
         near.body_b,
         body_arms(near.body_a, near.point_a, pose.position, turned_back),
-        body_arms(near.body_b, near.point_b, pose.position, turned_back),
+        body_arms(near.body_b, points_of_b(near), pose.position, turned_back),
         near.normal,
         displacement[chosen],
         stiffness[chosen],
@@ -90,7 +90,7 @@ def _matched(springs: TangentialSprings, contacts: Contacts, pose: Pose) -> tupl
     mine, theirs = [own], [found]
     for pair in np.setdiff1d(np.intersect1d(before, now), before[own]):
         rows, others = np.flatnonzero(before == pair), np.flatnonzero(now == pair)
-        there = PointPairs(contacts.point_a[others], contacts.point_b[others])
+        there = PointPairs(contacts.point_a[others], points_of_b(contacts)[others])
         own, found, _ = nearest_contacts(PointPairs(points.a[rows], points.b[rows]), there)
         mine.append(rows[own])
         theirs.append(others[found])
@@ -105,7 +105,7 @@ def _plain_matches(
     same = before[:, None] == now
     if not 0 < same.size <= _MOST_AT_ONCE:
         return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
-    away = np.where(same, distances(points, PointPairs(contacts.point_a, contacts.point_b)), np.inf)
+    away = np.where(same, distances(points, PointPairs(contacts.point_a, points_of_b(contacts))), np.inf)
     nearest = np.argmin(away, axis=1)
     alone = same.any(axis=1) & (np.bincount(nearest, minlength=len(now))[nearest] == 1)
     rows = np.flatnonzero(np.isin(before, before[~alone], invert=True))

@@ -10,6 +10,7 @@ import numpy as np
 from rigidfluid.core.contact.pairs.body_points import body_arms, placed_points
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.rigid import rotation_matrices
+from rigidfluid.core.model.contacts import points_of_b
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.types import Contacts, Pose
 
@@ -27,13 +28,15 @@ class ExtrapolatedContacts:
         self._round = np.isfinite(contacts.radius_a) & np.isfinite(contacts.radius_b) & ~contacts.at_wall
         turned_back = np.swapaxes(rotation_matrices(pose.orientation), -1, -2)
         self._points_a = _points(contacts.body_a, contacts.point_a, contacts.radius_a, pose, turned_back)
-        self._points_b = _points(contacts.body_b, contacts.point_b, contacts.radius_b, pose, turned_back)
+        self._points_b = _points(contacts.body_b, points_of_b(contacts), contacts.radius_b, pose, turned_back)
 
     def extrapolate(self, pose: Pose) -> Contacts:
         """Contacts when the bodies are at ``pose``, in the same order."""
         rotation = rotation_matrices(pose.orientation)
         old, normal = self._contacts, self._contacts.normal.copy()
         point_a, point_b = (each.moved(self._pose, pose, rotation) for each in (self._points_a, self._points_b))
+        if old.shift is not None:
+            point_b += old.shift
         gap = np.sum((point_a - point_b) * normal, axis=1)
         point_b[old.at_wall] = point_a[old.at_wall] - gap[old.at_wall, None] * normal[old.at_wall]
         if self._round.any():
@@ -51,6 +54,8 @@ class ExtrapolatedContacts:
         normal."""
         which, old = self._round, self._contacts
         a, b = pose.position[old.body_a[which]], pose.position[old.body_b[which]]
+        if old.shift is not None:
+            b = b + old.shift[which]
         distance = np.linalg.norm(a - b, axis=1)
         normal[which] = (a - b) / distance[:, None]
         point_a[which] = a - old.radius_a[which, None] * normal[which]

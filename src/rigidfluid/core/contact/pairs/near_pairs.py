@@ -7,11 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from rigidfluid.core.contact.pairs.broad_phase import near_pairs
+from rigidfluid.core.contact.pairs.broad_phase import SKIN, near_pairs
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
-
-SKIN = 0.6
-"""Distance beyond the reach up to which `NearPairs` searches, over the mean radius."""
 
 _LISTS = 2
 _ALL_PAIRS = 32

@@ -10,8 +10,11 @@ from numba import njit
 
 
 @njit(cache=True)
-def relative_velocities(position, velocity, spin, body_a, point_a, body_b, point_b):
-    """Velocity (m, d) of a relative to b half-way between the contact points [length/time]; walls are at rest."""
+def relative_velocities(position, velocity, spin, body_a, point_a, body_b, point_b, shift):
+    """Velocity (m, d) of a relative to b half-way between the contact points [length/time]; walls are at rest.
+
+    The image of b that is met is displaced by ``shift`` (m, d) from b, None for zero.
+    """
     count, dimension = point_a.shape
     relative, arm = np.empty((count, dimension)), np.empty(dimension)
     for i in range(count):
@@ -21,6 +24,8 @@ def relative_velocities(position, velocity, spin, body_a, point_a, body_b, point
                 continue
             for k in range(dimension):
                 arm[k] = 0.5 * (point_a[i, k] + point_b[i, k]) - position[body, k]
+                if shift is not None and side == 1:
+                    arm[k] -= shift[i, k]
             for k in range(dimension):
                 if dimension == 2:
                     turning = -spin[body, 0] * arm[1] if k == 0 else spin[body, 0] * arm[0]

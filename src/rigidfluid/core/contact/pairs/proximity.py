@@ -17,8 +17,7 @@ from rigidfluid.errors import StepRejected
 
 def detect(system: System, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
     """Contacts with gap ≤ ``reach`` [length], as the system's detector finds them; balls are round on any mesh."""
-    contacts = system.detector.detect(pose, mesh, reach)
-    contacts = system.detection.on_shapes(contacts, pose)
+    contacts = system.detection.detect(pose, mesh, reach)
     if any(interaction.law.film for interaction in system.interactions):
         return with_effective_radii(contacts, system.bodies, system.walls, pose)
     return contacts
@@ -46,7 +45,8 @@ def interacting(system: System, contacts: Contacts) -> BoolArray:
 
 
 def are_separate(system: System, contacts: Contacts) -> BoolArray:
-    """Tell whether a contact (m,) is neither between parts of one articulated body nor between bodies at one joint."""
+    """Tell whether a contact (m,) is neither between parts of one articulated body nor between bodies at one joint; an
+    image of either is separate."""
     count = len(system.bodies)
     other = system.assembly[np.minimum(contacts.body_b, count - 1)]
     apart = (contacts.body_b >= count) | (system.assembly[contacts.body_a] != other)
@@ -54,6 +54,8 @@ def are_separate(system: System, contacts: Contacts) -> BoolArray:
         pairs = np.sort(np.column_stack([contacts.body_a, contacts.body_b]), axis=1)
         surfaces = len(system.surfaces)
         apart &= ~np.isin(pairs @ [surfaces, 1], system.joined @ [surfaces, 1])
+    if contacts.shift is not None:
+        apart |= contacts.shift.any(axis=1)
     return np.asarray(apart)
 
 
@@ -76,6 +78,8 @@ def least_gaps(system: System, pose: Pose, gaps: FloatArray) -> FloatArray:
     beyond = ~np.isfinite(gaps)
     if not beyond.any():
         return gaps
+    if len(system.lattice.vectors):
+        return np.where(beyond, system.reach, gaps)
     bounds = system.bounding_radii
     free = np.maximum(broad_phase.least_gaps(pose.position, bounds, system.walls), system.reach)
     return np.where(beyond, free, gaps)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.contact.pairs.extrapolated_contacts import ExtrapolatedContacts
+from rigidfluid.core.contact.pairs.image_codes import image_codes
 from rigidfluid.core.contact.pairs.proximity import detect, interacting, travel
 from rigidfluid.core.contact.pairs.same_contacts import PointPairs, nearest_contacts, strictly_rising
 from rigidfluid.core.geometry.arrays import IntArray
@@ -66,8 +67,10 @@ class TrackedPairs:
         return select(near, interacting(self._system, near))
 
     def _numbers(self, contacts: Contacts) -> IntArray:
-        """Number of each contact's pair and sign, in the detectors' order of pairs."""
-        return 2 * (contacts.body_a * len(self._system.surfaces) + contacts.body_b) + (contacts.sign > 0.0)
+        """Number of each contact's pair, image and sign, in the detectors' order of pairs."""
+        images, count = image_codes(contacts, self._system.lattice)
+        pairs = contacts.body_a * len(self._system.surfaces) + contacts.body_b
+        return 2 * (count * pairs + images) + (contacts.sign > 0.0)
 
     def _refuse_others(self, found: Contacts, others: np.ndarray) -> None:
         entered = np.flatnonzero(others & (found.gap < self._system.law_range))

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from scipy import sparse
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.mechanics.rigid import moment
-from rigidfluid.core.model.contacts import middle, turning_radius
+from rigidfluid.core.model.contacts import sides, turning_radius
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.types import Contacts
 
@@ -50,10 +51,10 @@ def _all_point_rates(contacts: Contacts, dynamics: BodyDynamics) -> list[sparse.
 
 def _point_rates(contacts: Contacts, dynamics: BodyDynamics, direction: FloatArray) -> sparse.csr_matrix:
     """Matrix G (m, n·(d+k)) that maps the bodies' twists to the relative velocity along a ``direction`` (m, d)."""
-    position, point = dynamics.pose.position, middle(contacts)
+    position = dynamics.pose.position
 
-    def rows(which: IntArray, body: IntArray) -> FloatArray:
-        return np.hstack([direction[which], moment(point[which] - position[body], direction[which])])
+    def rows(which: IntArray, body: IntArray, point: FloatArray) -> FloatArray:
+        return np.hstack([direction[which], moment(point - position[body], direction[which])])
 
     return _rates(contacts, dynamics, rows)
 
@@ -62,24 +63,24 @@ def _turning_rates(contacts: Contacts, dynamics: BodyDynamics, axis: FloatArray)
     """Matrix (m, n·(d+k)) that maps the bodies' twists to the relative angular velocity along an ``axis`` (m, k), times
     its length."""
 
-    def rows(which: IntArray, _: IntArray) -> FloatArray:
+    def rows(which: IntArray, *_: Any) -> FloatArray:
         return np.hstack([np.zeros((len(which), dynamics.pose.position.shape[1])), axis[which]])
 
     return _rates(contacts, dynamics, rows)
 
 
 def _rates(
-    contacts: Contacts, dynamics: BodyDynamics, rows_on: Callable[[IntArray, IntArray], FloatArray]
+    contacts: Contacts, dynamics: BodyDynamics, rows_on: Callable[[IntArray, IntArray, FloatArray], FloatArray]
 ) -> sparse.csr_matrix:
-    """Matrix (m, n·(d+k)) of ``rows_on`` some contacts and their bodies (w, d+k), + for a and - for b."""
+    """Matrix (m, n·(d+k)) of ``rows_on`` some contacts, their bodies and points (w, d+k), + for a and - for b."""
     count, dimension = dynamics.pose.position.shape
     width = dimension + dynamics.twist.angular_velocity.shape[1]
     rows, columns, entries = [], [], []
-    for sign, body in ((1.0, contacts.body_a), (-1.0, contacts.body_b)):
+    for sign, (body, point) in zip((1.0, -1.0), sides(contacts), strict=True):
         which = np.flatnonzero(body < count)
         index = body[which]
         rows.append(np.repeat(which, width))
         columns.append((width * index[:, None] + np.arange(width)).ravel())
-        entries.append((sign * rows_on(which, index)).ravel())
+        entries.append((sign * rows_on(which, index, point[which])).ravel())
     places = np.concatenate(rows), np.concatenate(columns)
     return sparse.csr_matrix((np.concatenate(entries), places), (len(contacts), count * width))

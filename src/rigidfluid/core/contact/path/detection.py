@@ -26,14 +26,15 @@ class PoseDetection(Detection):
         # whoever only chooses a way of detection, as a check does, loads no compiled kernels
         from rigidfluid.core.contact.path.look_ahead import foreseen, look_ahead
 
+        self._system = system
         self._foreseen, self._look_ahead = partial(foreseen, system), partial(look_ahead, system)
 
     @staticmethod
     def mesh_at(pose: Pose, make: Callable[[Pose], Mesh]) -> Mesh:
         return Mesh.empty(pose.position.shape[1])
 
-    def on_shapes(self, contacts: Contacts, pose: Pose) -> Contacts:
-        return contacts
+    def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
+        return self._system.detector.detect(pose, mesh, reach)
 
     def look_ahead(self, near: FollowedContacts, dynamics: BodyDynamics, size: float) -> Sight:
         return self._look_ahead(dynamics, size)
@@ -52,6 +53,20 @@ class PoseDetection(Detection):
         return False
 
 
+class DetectionOfImages(PoseDetection):
+    """`PoseDetection` between periodic surfaces: bodies meet each other's images too."""
+
+    def __init__(self, system: System) -> None:
+        from rigidfluid.core.contact.pairs.image_detection import ImageDetection
+
+        super().__init__(system)
+        make = partial(type(system.detector), system.detector.options)
+        self._images = ImageDetection(make, system.bodies, system.walls, system.lattice)
+
+    def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
+        return self._images.detect(pose, reach)
+
+
 class MeshDetection(Detection):
     """`Detection` on the mesh at the start of a step and at its end; between them contacts move with their bodies."""
 
@@ -64,8 +79,8 @@ class MeshDetection(Detection):
     def mesh_at(pose: Pose, make: Callable[[Pose], Mesh]) -> Mesh:
         return make(pose)
 
-    def on_shapes(self, contacts: Contacts, pose: Pose) -> Contacts:
-        return on_round_shapes(contacts, self._system.walls, pose)
+    def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
+        return on_round_shapes(self._system.detector.detect(pose, mesh, reach), self._system.walls, pose)
 
     def look_ahead(self, near: FollowedContacts, dynamics: BodyDynamics, size: float) -> Sight:
         return Sight(near.extrapolate, np.inf, size)

@@ -31,7 +31,7 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.wall import WallVelocities
 from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing
 from rigidfluid.core.model.contacts import middle as centre
-from rigidfluid.core.model.contacts import normal_part, tangential_part, turning_radius
+from rigidfluid.core.model.contacts import normal_part, sides, tangential_part, turning_radius
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.kinematics import Kinematics
@@ -307,9 +307,9 @@ def _turned_as_wanted(law: ForceLaw, iterate: _Iterate[M], size: float, used: _D
         return True
     pose, missing = iterate.pose, np.linalg.norm(wanted.couple - used.couple, axis=1)
     lightest, turned = np.linalg.eigvalsh(iterate.dynamics.inverse_inertia)[:, -1], np.zeros(len(missing))
-    for body in (iterate.middle.body_a, iterate.middle.body_b):
+    for body, point in sides(iterate.middle):
         on_body = np.flatnonzero(body < len(pose.position))
-        arm = np.linalg.norm(centre(iterate.middle)[on_body] - pose.position[body[on_body]], axis=1)
+        arm = np.linalg.norm(point[on_body] - pose.position[body[on_body]], axis=1)
         turned[on_body] += 0.5 * size**2 * arm * lightest[body[on_body]] * missing[on_body]
     return bool(np.all(turned <= _tolerance(law, pose)))
 

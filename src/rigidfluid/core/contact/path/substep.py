@@ -12,7 +12,7 @@ from rigidfluid.core.contact.laws.stiffness import contacts_on_the_way, greatest
 from rigidfluid.core.contact.path.delassus import delassus
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.wall import WallVelocities
-from rigidfluid.core.model.contacts import middle, normal_part, select, turning_radius
+from rigidfluid.core.model.contacts import middle, normal_part, select, sides, turning_radius
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.part_results import refuse_no_number
@@ -125,7 +125,8 @@ def _radial_energy(
     none.
     """
     mass = relative_motion(contacts, dynamics).mass
-    distance = np.linalg.norm(_relative(dynamics.pose.position, contacts), axis=1)
+    centres = _relative(dynamics.pose.position, contacts)
+    distance = np.linalg.norm(centres if contacts.shift is None else centres - contacts.shift, axis=1)
     on_body = contacts.body_b < len(dynamics.pose.position)
     turned = np.where(on_body, 1.0 - (distance / (distance + inside)) ** 2, 0.0)
     sliding = np.sum(velocity**2, axis=1) - opening**2
@@ -230,9 +231,9 @@ def _turning_rate(
 def _square_arms(contacts: Contacts, dynamics: BodyDynamics) -> FloatArray:
     """Squares of the distances from the centres of a and of b to the contact, (m, 2), zero for walls [length²]."""
     square = np.zeros((len(contacts), 2))
-    for side, body in enumerate([contacts.body_a, contacts.body_b]):
+    for side, (body, point) in enumerate(sides(contacts)):
         on_body = body < len(dynamics.pose.position)
-        arm = middle(contacts)[on_body] - dynamics.pose.position[body[on_body]]
+        arm = point[on_body] - dynamics.pose.position[body[on_body]]
         square[on_body, side] = np.sum(arm**2, axis=1)
     return square
 
@@ -336,7 +337,9 @@ def relative_velocity(contacts: Contacts, pose: Pose, twist: Twist) -> FloatArra
     from rigidfluid.core.contact.pairs.pair_velocity import relative_velocities
 
     a, b = (contacts.body_a, contacts.point_a), (contacts.body_b, contacts.point_b)
-    return np.asarray(relative_velocities(pose.position, twist.velocity, twist.angular_velocity, *a, *b))
+    return np.asarray(
+        relative_velocities(pose.position, twist.velocity, twist.angular_velocity, *a, *b, contacts.shift)
+    )
 
 
 def _inverse_masses(contacts: Contacts, dynamics: BodyDynamics) -> FloatArray:
