@@ -16,6 +16,7 @@ from rigidfluid.api import Simulation
 
 STEPS = (0.04, 0.02, 0.01, 0.005)
 NUMBER, DENSITY = 10, 1.5
+BALL = {"type": "sphere"}
 COLOURS = ("#2b83ba", "#1a9641", "#fdae61", "#d7191c")
 
 
@@ -46,14 +47,12 @@ def scene(step: float) -> Scene:
             "scene": {"name": "enter_and_leave", "dimension": 2, "seed": 1},
             "fluid": {"density": 1.0, "viscosity": 0.02, "gravity": [0.0, -30.0]},
             "domain": {"lower": [0.0, 0.0], "upper": [1.0, 2.0]},
-            "body": [
-                {"name": "post", "type": "sphere", "radius": 0.1, "density": 1.0, "position": [0.15, 0.5], "fixed": True}
-            ],
+            "body": [BALL | {"name": "post", "radius": 0.1, "density": 1.0, "position": [0.15, 0.5], "fixed": True}],
             "source": [
                 {
                     "name": "grain",
                     "shape": [
-                        {"type": "sphere", "radius": 0.08},
+                        BALL | {"radius": 0.08},
                         {"type": "ellipsoid", "semi_axes": [0.1, 0.06]},
                     ],
                     "density": DENSITY,
