@@ -272,6 +272,7 @@ def test_states_after_the_checkpoint_that_are_not_whole_are_dropped(
     results = read_results(folder)
     np.testing.assert_array_equal(results.present, PRESENT)
     assert len(results.energy["kinetic"]) == len(results.time) == 7
+    assert len(read_results(folder, motion_only=True).time) == 7
 
 
 def test_a_body_that_came_after_the_checkpoint_ends_the_results(tmp_path: Path) -> None:
