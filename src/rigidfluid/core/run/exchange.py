@@ -105,6 +105,7 @@ def successor(origin: Model, model: Model, system: System, state: State, populat
     raises SceneError where they cannot be, or overlap."""
     require_changeable(model)
     now = population.model(origin, Present(_names(system), state.pose, state.twist))
+    require_changeable(now)
     after = assemble_present(now)
     exchange = Exchange.between(system, after)
     given = prescribed_motion(now.bodies, after.pose).rows
