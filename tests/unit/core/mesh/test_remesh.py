@@ -25,7 +25,8 @@ from rigidfluid.core.mesh.adaptation.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation import refine_surface as surface
 from rigidfluid.core.mesh.generation.meshing import generate_mesh
-from rigidfluid.core.mesh.generation.refine_surface import long_edges, refine_surface
+from rigidfluid.core.mesh.generation.refine_films import refine_films
+from rigidfluid.core.mesh.generation.refine_surface import LONGEST, long_edges, refine_surface
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.mesh.size.size_field import ALONG_FILM, Sizes, wanted_size
 from rigidfluid.core.model.types import Mesh, Pose
@@ -161,6 +162,39 @@ def test_only_edges_too_long_for_the_gap_are_split_and_their_middles_lie_on_the_
     upper_half = {facet for facet in body_facets(mesh, 1) if min(point[1] for point in facet[1]) > RADIUS}
     assert upper_half <= body_facets(split, 1)
     assert np.all(cell_volumes(split.points, split.cells) > 0)
+
+
+def test_edges_across_a_film_thinner_than_its_cells_are_split_inside_and_elsewhere_they_stay():
+    pose = upright([1 - RADIUS - 2e-5, 3], [1 + RADIUS + 2e-5, 3])
+    around = FluidDomain([DISK] * 2, pose, BOX, box_walls(LOWER, UPPER, 2))
+    mesh = refine_surface(generate_mesh(around, COARSE), around, COARSE)
+    split = refine_films(mesh, around, COARSE)
+    film = np.linalg.norm(mesh.points[mesh.cells].mean(axis=1) - [1.0, 3.0], axis=1) < 0.1
+    before, after = (inner_edges_in_film(one, around) for one in (mesh, split))
+    assert before.max() > 2 * LONGEST
+    assert after.max() <= LONGEST
+    assert np.array_equal(split.facets, mesh.facets)
+    assert np.array_equal(split.points[: len(mesh.points)], mesh.points)
+    assert {tuple(cell) for cell in mesh.cells[~film].tolist()} <= {tuple(cell) for cell in split.cells.tolist()}
+    assert np.all(cell_volumes(split.points, split.cells) > 0)
+
+
+def inner_edges_in_film(mesh, around):
+    """Lengths of inner edges over the wanted size where the film is thinner than that."""
+    edges = np.array(sorted(set(map(tuple, edges_of(mesh.cells))) - set(map(tuple, np.sort(mesh.facets, axis=1)))))
+    middles = mesh.points[edges].mean(axis=1)
+    wanted = wanted_size(middles, around, COARSE)
+    return (edge_lengths(mesh.points, edges) / wanted)[around.gap_widths(middles) < wanted]
+
+
+@pytest.mark.long
+def test_two_balls_are_meshed_at_a_gap_of_a_twenty_thousandth_of_their_radius():
+    lower, upper, sizes = np.full(3, -3.0), np.full(3, 3.0), Sizes(1.5, 0.4, 0.5, refinements=5)
+    pose = upright([0, 0, -1.000025], [0, 0, 1.000025])
+    bodies = [ball(1.0, 3)] * 2
+    mesh = initial_mesh(FluidDomain(bodies, pose, box(lower, upper), box_walls(lower, upper, 2)), sizes)
+    assert_valid(mesh, bodies, pose, lower, upper)
+    assert cell_quality(mesh.points, mesh.cells).min() > 0.02
 
 
 def test_the_wanted_size_follows_its_formula():

@@ -18,6 +18,7 @@ from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation.fill import fill_mesh
 from rigidfluid.core.mesh.generation.inserter import BY_SHAPE, Inserter
 from rigidfluid.core.mesh.generation.meshing import generate_mesh, put_back
+from rigidfluid.core.mesh.generation.refine_films import refine_films
 from rigidfluid.core.mesh.generation.refine_surface import LONGEST, long_edges, on_kept_surfaces, refine_surface
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes, edge_lengths
 from rigidfluid.core.mesh.size.size_field import Sizes, wanted_size
@@ -94,10 +95,10 @@ def remesh(
     Their facets are kept too, in the same order and before those of flat surfaces, but those too long for the gap they
     face are bisected first. If that would invert a cell, the cells around the unbisected facets are improved before;
     facets that still do not fit after ROUNDS of it stay if they are within LONGEST_EDGE. MMG knows the wanted size at
-    the vertices of the mesh that it is given alone, and sometimes leaves a sliver at a flat wall: if its mesh is far
-    too coarse or has a bad cell, it is given that mesh again. So many ``layers`` of cells next to bodies are kept as
-    far as they are good, and the flow there as it is. Raises MeshError where MMG fails, loses a facet or leaves a bad
-    cell with every gradation.
+    the vertices of the mesh that it is given alone, and sometimes leaves a sliver at a flat wall or in a thin film: if
+    its mesh is far too coarse or has a bad cell, it is given that mesh again, with long edges in thin films bisected.
+    So many ``layers`` of cells next to bodies are kept as far as they are good, and the flow there as it is. Raises
+    MeshError where MMG fails, loses a facet or leaves a bad cell with every gradation.
     """
     size_at = partial(wanted_size, fluid_domain=fluid_domain, sizes=sizes)
     check_mesh(mesh, quality=0.0)
@@ -106,7 +107,8 @@ def remesh(
         well_shaped = lowest_quality(new) > WORST_QUALITY and longest_relative_edge(new, size_at) <= LONGEST_EDGE
         if well_shaped and not len(long_edges(new, fluid_domain, sizes, LONGEST)[0]):
             break
-        new = best_remeshed(refine_surface(new, fluid_domain, sizes), fluid_domain, size_at, layers)
+        refined = refine_films(refine_surface(new, fluid_domain, sizes), fluid_domain, sizes)
+        new = best_remeshed(refined, fluid_domain, size_at, layers)
     check_mesh(new, quality=WORST_QUALITY)
     excess = longest_relative_edge(new, size_at)
     if excess > LONGEST_EDGE:

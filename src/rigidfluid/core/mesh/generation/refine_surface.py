@@ -3,6 +3,7 @@ surface."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import combinations
 
 import numpy as np
@@ -31,9 +32,15 @@ def refine_surface(mesh: Mesh, fluid_domain: FluidDomain, sizes: Sizes) -> Mesh:
     above it. Since an edge of length L cuts off L²/(8R) of a surface of radius R, and L is at most about the gap, the
     polygon's error stays far below the gap.
     """
+    return bisect_all(mesh, lambda now: long_edges(now, fluid_domain, sizes, LONGEST)[:2])
+
+
+def bisect_all(mesh: Mesh, long: Callable[[Mesh], tuple[IntArray, FloatArray]]) -> Mesh:
+    """Bisect the edges (E, 2) that are too ``long``, at the points (E, d) told with them, longest first, until none is
+    left but those whose bisection would flatten a cell."""
     refused: set[tuple[int, int]] = set()
     while True:
-        edges, middles, _ = long_edges(mesh, fluid_domain, sizes, LONGEST)
+        edges, middles = long(mesh)
         left = np.array([(a, b) not in refused for a, b in edges.tolist()], dtype=bool)
         if not left.any():
             return mesh
