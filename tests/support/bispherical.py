@@ -30,7 +30,7 @@ E_FOLDS = 24.0
 def resistance(gap: float, radius_b: float) -> FloatArray:
     """Resistance A of spheres of radius 1 and ``radius_b`` to (U_a, ω_a, U_b, ω_b), (4, 4): forces and torques about
     the centres, U along x and ω about y, a above b; (2, 2) of a alone where ``radius_b`` is infinite."""
-    alpha, beta, c = _coordinates(gap, radius_b)
+    alpha, beta, c = coordinates(gap, radius_b)
     order = int(E_FOLDS / min(alpha, -beta or np.inf)) + 10
     motions = [(0, 1.0, 0.0), (0, 0.0, 1.0), (1, 1.0, 0.0), (1, 0.0, 1.0)][: 2 if np.isinf(radius_b) else 4]
     matrix = sparse.bmat(_boundary_rows(alpha, beta, order) + _divergence_rows(alpha, beta, order)).tocsc()
@@ -43,18 +43,24 @@ def resistance(gap: float, radius_b: float) -> FloatArray:
 def film_resistance(gap: float, radius_b: float) -> FloatArray:
     """Resistance M = (B A⁻¹ Bᵀ)⁻¹ (2, 2) of a pair that nothing else holds, to (v, w) = B (U_a, ω_a, U_b, ω_b): v the
     velocity of a relative to b half-way between the surfaces, w that of n × (ω_a - ω_b), with n from b to a."""
-    arm_a, arm_b = 1.0 + 0.5 * gap, radius_b + 0.5 * gap
-    relative = np.array([[1.0, -arm_a, -1.0, -arm_b], [0.0, -1.0, 0.0, 1.0]])
-    if np.isinf(radius_b):
-        relative = relative[:, :2]
+    relative = relative_motion(gap, radius_b)
     return np.linalg.inv(relative @ np.linalg.solve(resistance(gap, radius_b), relative.T))
 
 
+def relative_motion(gap: float, radius_b: float) -> FloatArray:
+    """The B of `film_resistance`, (2, 4); (2, 2) of a alone where ``radius_b`` is infinite."""
+    arm_a, arm_b = 1.0 + 0.5 * gap, radius_b + 0.5 * gap
+    if np.isinf(radius_b):
+        return np.array([[1.0, -arm_a], [0.0, -1.0]])
+    return np.array([[1.0, -arm_a, -1.0, -arm_b], [0.0, -1.0, 0.0, 1.0]])
+
+
 @cache
-def twisting_resistance(gap: float, radius_b: float) -> float:
-    """Resistance of a pair that nothing else holds to ω_a - ω_b along the axis, with viscosity 1: sums over the images
-    of spheres that spin (Jeffery, Proc. London Math. Soc. s2-14 (1915) 327)."""
-    alpha, beta, c = _coordinates(gap, radius_b)
+def twisting(gap: float, radius_b: float) -> FloatArray:
+    """Resistance of spheres of radius 1 and ``radius_b`` to angular velocities along the axis, with viscosity 1,
+    (2, 2); (1, 1) of the first alone where ``radius_b`` is infinite. Sums over the images of spheres that spin
+    (Jeffery, Proc. London Math. Soc. s2-14 (1915) 327)."""
+    alpha, beta, c = coordinates(gap, radius_b)
     n = (alpha - beta) * np.arange(1.0, int(E_FOLDS / (alpha - beta)) + 10)
 
     def images(distance: FloatArray) -> float:
@@ -62,13 +68,20 @@ def twisting_resistance(gap: float, radius_b: float) -> float:
 
     a = images(n + beta)
     if np.isinf(radius_b):
-        return a
+        return np.array([[a]])
     b, both = images(n - alpha), -images(n)
-    return (a * b - both**2) / (a + b + 2.0 * both)
+    return np.array([[a, both], [both, b]])
 
 
-def _coordinates(gap: float, radius_b: float) -> tuple[float, float, float]:
-    """α, β and c."""
+@cache
+def twisting_resistance(gap: float, radius_b: float) -> float:
+    """Resistance of a pair that nothing else holds to ω_a - ω_b along the axis, with viscosity 1."""
+    found = twisting(gap, radius_b)
+    return float(found[0, 0] if np.isinf(radius_b) else np.linalg.det(found) / found.sum())
+
+
+def coordinates(gap: float, radius_b: float) -> tuple[float, float, float]:
+    """Coordinates α > 0 and β of the spheres and the length c, over the radius of the first."""
     distance = 1.0 + radius_b + gap
     beyond = gap * (1.0 if np.isinf(radius_b) else (gap + 2.0 * radius_b) / (2.0 * distance))
     c = float(np.sqrt(beyond * (2.0 + beyond)))

@@ -1,6 +1,7 @@
 import bispherical
 import numpy as np
 import pytest
+from approach import approach
 from published import brenner, drag_of_approach
 from touching import NORMAL, contact
 
@@ -44,6 +45,25 @@ def test_sphere_at_wall_grows_as_in_the_exact_solution(gap: float, sliding: bool
 def test_equal_spheres_grow_as_in_the_exact_solution(gap: float) -> None:
     exact = 3 * np.pi * VISCOSITY * RADIUS * (drag_of_approach(gap) - drag_of_approach(0.1))
     assert resistance(law(0.1 * RADIUS), gap * RADIUS, RADIUS, RADIUS, 3) == pytest.approx(exact, rel=4e-3)
+
+
+@pytest.mark.parametrize("gap", [0.05, 0.01, 1e-3, 1e-4])
+@pytest.mark.parametrize("radius_b", [1.0, 0.5, 0.1, 3.0])
+def test_unequal_spheres_that_nothing_else_holds_grow_as_in_the_exact_solution(gap: float, radius_b: float) -> None:
+    size = 1.0 / (1.0 + 1.0 / radius_b)
+    thin, thick = (
+        1.0 / (np.array([1.0, -1.0]) @ np.linalg.solve(approach(part * size, radius_b), [1.0, -1.0]))
+        for part in (gap, 0.1)
+    )
+    found = resistance(law(0.1 * size * RADIUS), gap * size * RADIUS, RADIUS, radius_b * RADIUS, 3)
+    assert found == pytest.approx(VISCOSITY * RADIUS * (thin - thick), rel=1e-2)
+
+
+def test_spheres_on_a_line_have_the_exact_forces() -> None:
+    """Two equal ones of Brenner's series, and two far apart of Stokes' law and Oseen's tensor."""
+    assert approach(0.1, 1.0) @ [1.0, -1.0] == pytest.approx(6 * np.pi * drag_of_approach(0.1) * np.array([1, -1]))
+    far = 6 * np.pi * np.array([[1.0, -6e-4], [-6e-4, 4.0]])
+    np.testing.assert_allclose(approach(1e4, 4.0), far, rtol=1e-3)
 
 
 def along_and_turning(law: LubricationLaw, gap: float, radius_b: float) -> np.ndarray:
