@@ -48,7 +48,7 @@ def parts_of(mesh: Mesh, owner: IntArray) -> list[Mesh]:
     count = int(owner.max()) + 1
     if count == 1:
         return [mesh]
-    facet_owner = owner[_cells_of_facets(mesh)]
+    facet_owner = owner[cells_of_facets(mesh)]
     vertices = [np.unique(mesh.cells[owner == rank]) for rank in range(count)]
     lowest = np.empty(len(mesh.points), dtype=np.int64)
     for rank in reversed(range(count)):
@@ -151,7 +151,7 @@ def _part_of_curves(curved: CurvedEdges | None, vertices: IntArray, cells: IntAr
     return CurvedEdges(edges[held], curved.surface[inside][held], curved.middles[inside][held])
 
 
-def _cells_of_facets(mesh: Mesh) -> IntArray:
+def cells_of_facets(mesh: Mesh) -> IntArray:
     """The cell that each boundary facet belongs to, (F,): the one that has all of its vertices."""
     cells, facets = (_incidence(simplices, len(mesh.points)) for simplices in (mesh.cells, mesh.facets))
     common = (facets @ cells.T).tocoo()

@@ -2,21 +2,53 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import scipy
 
-from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.geometry.mesher_unit import in_unit
 from rigidfluid.core.mesh.distribution import surface_vertices
+from rigidfluid.core.mesh.images import originals
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.errors import MeshError
 
 _APART = 1e-6
 """Netgen's images are so near to where they belong, over the distance of the surfaces."""
+
+
+@dataclass(frozen=True)
+class Seams:
+    """Periodic surfaces of a mesh: of k pairs the ``first`` and the ``second`` marker (k,), and the ``ways`` (k, d)
+    from the first to the second [length]."""
+
+    first: IntArray
+    second: IntArray
+    ways: FloatArray
+
+    @classmethod
+    def of_domain(cls, bodies: int, domain: Domain) -> Seams:
+        """The periodic surfaces of a ``domain`` with so many ``bodies`` in it."""
+        pairs = np.array(domain.periodic, dtype=np.int64).reshape(-1, 2) + bodies
+        ways = [_way(domain, pair) for pair in domain.periodic]
+        return cls(pairs[:, 0], pairs[:, 1], np.array(ways).reshape(-1, domain.dimension))
+
+    @property
+    def surfaces(self) -> IntArray:
+        """All markers, (2k,)."""
+        return np.concatenate([self.first, self.second])
+
+    def originals(self, mesh: Mesh) -> tuple[IntArray, IntArray]:
+        """The vertex that each one of a ``mesh`` is an image of, (N,), and by how many periods, (N, k), as for
+        `originals`."""
+        vertices = [
+            (surface_vertices(mesh, first), surface_vertices(mesh, second))
+            for first, second in zip(self.first.tolist(), self.second.tolist(), strict=True)
+        ]
+        return originals(mesh.points, vertices, self.ways)
 
 
 def identify(sides: Any, first: int, domain: Domain, unit: float) -> None:
