@@ -64,12 +64,14 @@ def whole(mesh: Mesh) -> Mesh | None:
     if mesh.part is None:
         return mesh
     pieces = mesh.ranks.gather(_piece(mesh))
-    return None if pieces is None else _joined(pieces)
+    return None if pieces is None else replace(_joined(pieces), periods=mesh.periods)
 
 
 def joined(parts: Sequence[Mesh]) -> Mesh:
     """Join all parts of a mesh, in the order of ranks, to the `whole`."""
-    return parts[0] if len(parts) == 1 else _joined([_piece(part) for part in parts])
+    if len(parts) == 1:
+        return parts[0]
+    return replace(_joined([_piece(part) for part in parts]), periods=parts[0].periods)
 
 
 def _piece(mesh: Mesh) -> _Piece:
@@ -134,6 +136,7 @@ def _part(mesh: Mesh, vertices: IntArray, cells: IntArray, facets: IntArray, own
         markers=mesh.markers[facets],
         part=MeshPart(ALONE, vertices, cells, facets, owned[vertices], counts),
         curved=_part_of_curves(mesh.curved, vertices, own_cells),
+        periods=mesh.periods,
     )
 
 

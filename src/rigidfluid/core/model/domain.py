@@ -37,7 +37,7 @@ class Domain(SpatialPart):
     kind: ClassVar[str] = "domain"
     periodic: tuple[tuple[int, int], ...] = ()
     """Pairs of flat pieces, by their numbers, that are periodic: what leaves by one comes in by the other.
-    The second is the first displaced; their facets match, and stay."""
+    The second is the first displaced. A mesh may be cut open elsewhere, so that their facets are not on the pieces."""
 
     @property
     @abstractmethod
@@ -80,6 +80,15 @@ class Domain(SpatialPart):
         other = copy(self)
         other.periodic = pairs
         return other
+
+    @property
+    def lattice(self) -> FloatArray:
+        """Displacements from the first to the second piece of each periodic pair, (k, d) [length]."""
+        planes = [[self.pieces[number].shape.plane for number in pair] for pair in self.periodic]
+        ways = [
+            float((two.point - one.point) @ one.unit_normal) * one.unit_normal for one, two in planes if one and two
+        ]
+        return np.array(ways, dtype=float).reshape(-1, self.dimension)
 
     def called(self, names: Collection[str]) -> Self:
         """The same domain, each of its pieces under its other name where that is among the ``names``."""

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rigidfluid.core.geometry import images
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
-from rigidfluid.core.mesh import images
 from rigidfluid.taylor_hood.elements.face import Face
 
 
@@ -28,8 +28,6 @@ def originals(faces: Sequence[Face], node_points: FloatArray) -> tuple[IntArray,
         If the facets of a pair do not match.
     """
     by_surface = {face.condition.surface: face for face in faces}
-    pairs = [
-        (face.nodes, by_surface[face.condition.image].nodes) for face in faces if face.condition.image is not None
-    ]
+    pairs = [(face.nodes, by_surface[face.condition.image].nodes) for face in faces if face.condition.image is not None]
     ways = [node_points[second].mean(axis=0) - node_points[first].mean(axis=0) for first, second in pairs]
     return images.originals(node_points, pairs, np.array(ways).reshape(-1, node_points.shape[1]))

@@ -135,6 +135,13 @@ class Surfaces:
             jump[images] -= ahead[images] * drop
         return jump
 
+    def pressure_drops(self, pressure: FloatArray) -> FloatArray:
+        """Mean drops of a ``pressure`` (vertices,) from the first to the second face of each periodic pair, (k,)."""
+        ahead = self._periods[: len(pressure)]
+        images = np.flatnonzero(ahead.any(axis=1))
+        fall = pressure[self.originals[images]] - pressure[images]
+        return np.asarray(np.linalg.lstsq(ahead[images].astype(float), fall, rcond=None)[0])
+
     def prescribed_part(self, velocity: FloatArray) -> FloatArray:
         """The part of a ``velocity`` (nodes, d) that is not free; zero on oblique, curved and periodic faces, where
         the velocity that is held is zero, or another node's."""

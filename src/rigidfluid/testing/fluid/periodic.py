@@ -10,7 +10,8 @@ import pytest
 from rigidfluid.core.fluid.conditions import Periodic, Slip, Value, no_pressure
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.mesh.adaptation.recut import neighbours, recut, smoothed
+from rigidfluid.core.mesh.adaptation.recut import neighbours, recut
+from rigidfluid.core.mesh.adaptation.smooth_cut import smooth_cut
 from rigidfluid.core.mesh.generation.periodic import Seams
 from rigidfluid.core.mesh.topology import boundary_facets
 from rigidfluid.core.model.types import Mesh, Pose
@@ -115,7 +116,8 @@ def _bent_seam(dimension: int) -> Mesh:
     centres = mesh.points[mesh.cells].mean(axis=1)
     shift = np.zeros((len(mesh.cells), len(axes)), dtype=np.int64)
     shift[:, 0] = centres[:, 0] < 0.3 + 0.3 * np.sin(2.0 * np.pi * centres[:, 1])
-    return recut(mesh, seams, smoothed(shift, neighbours(mesh, seams), centres[:, 0] < 0.1 * (centres[:, 1] < 0.5)))
+    free = np.zeros(len(mesh.cells), dtype=bool)
+    return recut(mesh, seams, smooth_cut(shift, neighbours(mesh, seams), free))
 
 
 def _twice(dimension: int) -> Mesh:

@@ -11,14 +11,12 @@ from itertools import combinations
 
 import numpy as np
 
-from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.mesh.distribution import cells_of_facets
 from rigidfluid.core.mesh.generation.periodic import Seams
+from rigidfluid.core.mesh.topology import REMEDY
 from rigidfluid.core.model.types import CurvedEdges, Mesh
 from rigidfluid.errors import MeshError
-
-_SWEEPS = 20
-"""Largest number of times that the shifts of all cells at the seam are looked at."""
 
 
 @dataclass(frozen=True)
@@ -35,8 +33,7 @@ def recut(mesh: Mesh, seams: Seams, shift: IntArray) -> Mesh:
     """The same periodic mesh with each cell displaced by its ``shift`` (M, k), in periods.
 
     Cells keep their order, and facets of bodies and walls go with their cell. The facets between neighbours that are
-    no longer in the same period become the periodic ones. Raises MeshError where two neighbours would be apart in more
-    than one direction.
+    no longer in the same period become the periodic ones; they may be apart in one direction alone.
     """
     root, offset = seams.originals(mesh)
     placed = offset[mesh.cells] + shift[:, None]
@@ -86,7 +83,8 @@ def _seam(cells: IntArray, pairs: Neighbours, shift: IntArray, seams: Seams) -> 
     cut = np.flatnonzero(apart.any(axis=1))
     apart = apart[cut]
     if (np.abs(apart).sum(axis=1) > 1).any():
-        raise MeshError("mesh", "cells in two periods", "neighbours that are one period apart", "Use finer cells.")
+        found = "a cell more than one period from its neighbour"
+        raise MeshError("mesh", found, "a seam along one pair of periodic surfaces at a time", REMEDY)
     pair, sign = np.argmax(np.abs(apart), axis=1), apart.sum(axis=1)
     facets, markers = [], []
     for side, ahead in ((0, sign > 0), (1, sign < 0)):
@@ -98,7 +96,7 @@ def _seam(cells: IntArray, pairs: Neighbours, shift: IntArray, seams: Seams) -> 
 def _facets_opposite(cells: IntArray, corner: IntArray) -> IntArray:
     """The facet (F, d) of each of some ``cells`` (F, d+1) opposite to a ``corner`` (F,)."""
     rest = np.arange(cells.shape[1]) != corner[:, None]
-    return cells[rest].reshape(len(cells), -1)
+    return np.asarray(cells[rest].reshape(len(cells), -1))
 
 
 def _in_cells(simplices: IntArray, cell: IntArray, old: IntArray, new: IntArray) -> IntArray:
@@ -119,38 +117,3 @@ def _curves(curved: CurvedEdges, old: IntArray, new: IntArray, way: FloatArray) 
     vertices, index = np.unique(after[bent], axis=0, return_index=True)
     place, cell = place[bent[index]], bent[index] // len(pairs)
     return CurvedEdges(vertices, curved.surface[place], curved.middles[place] + way[cell])
-
-
-def _neighbours_of(pairs: Neighbours, cells: int) -> list[tuple[IntArray, IntArray]]:
-    """Of each of so many ``cells`` the neighbours (c,) and what to add to their shifts to be in one period with them,
-    (c, k)."""
-    owner, other = np.concatenate([pairs.cells, pairs.cells[:, ::-1]]).T
-    jump = np.concatenate([-pairs.apart, pairs.apart])
-    order = np.argsort(owner, kind="stable")
-    ends = np.cumsum(np.bincount(owner, minlength=cells))[:-1]
-    return list(zip(np.split(other[order], ends), np.split(jump[order], ends), strict=True))
-
-
-def smoothed(shift: IntArray, pairs: Neighbours, held: BoolArray) -> IntArray:
-    """The ``shift`` (M, k) of cells, changed for as few of those that are not ``held`` (M,) that no neighbours are
-    apart in two directions, and no cell has more facets on the seam than it would have with a neighbour's shift.
-
-    Raises MeshError where the cells that are held leave none.
-    """
-    shift = shift.copy()
-    around = _neighbours_of(pairs, len(shift))
-    for _ in range(_SWEEPS):
-        apart = pairs.apart + shift[pairs.cells[:, 0]] - shift[pairs.cells[:, 1]]
-        steps = np.abs(apart).sum(axis=1)
-        cells = np.unique(pairs.cells[steps > 0])
-        before = shift.copy()
-        for cell in cells[~held[cells]].tolist():
-            others, jump = around[cell]
-            choices = np.concatenate([shift[cell][None], shift[others] + jump])
-            left = np.abs(choices[:, None] - choices[None, 1:]).sum(axis=2)
-            # facets apart in two directions count more than any number of others
-            cost = np.where(left > 1, 100, left).sum(axis=1)
-            shift[cell] = choices[np.argmin(cost)]
-        if np.array_equal(shift, before):
-            break
-    return shift

@@ -9,9 +9,9 @@ import numpy as np
 import scipy
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.images import originals
 from rigidfluid.core.geometry.mesher_unit import in_unit
 from rigidfluid.core.mesh.distribution import surface_vertices
-from rigidfluid.core.mesh.images import originals
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.errors import MeshError
@@ -30,11 +30,10 @@ class Seams:
     ways: FloatArray
 
     @classmethod
-    def of_domain(cls, bodies: int, domain: Domain) -> Seams:
+    def from_domain(cls, bodies: int, domain: Domain) -> Seams:
         """The periodic surfaces of a ``domain`` with so many ``bodies`` in it."""
         pairs = np.array(domain.periodic, dtype=np.int64).reshape(-1, 2) + bodies
-        ways = [_way(domain, pair) for pair in domain.periodic]
-        return cls(pairs[:, 0], pairs[:, 1], np.array(ways).reshape(-1, domain.dimension))
+        return cls(pairs[:, 0], pairs[:, 1], domain.lattice)
 
     @property
     def surfaces(self) -> IntArray:
@@ -56,10 +55,8 @@ def identify(sides: Any, first: int, domain: Domain, unit: float) -> None:
     number, the domain's from ``first`` on."""
     from netgen import occ
 
-    by_name = {side.name: side for side in sides}
-    for pair in domain.periodic:
-        one, two = (by_name[str(first + piece)] for piece in pair)
-        way = in_unit(_way(domain, pair), unit)
+    for pair, way in zip(domain.periodic, in_unit(domain.lattice, unit), strict=True):
+        one, two = (occ.ListOfShapes([side for side in sides if side.name == str(first + piece)]) for piece in pair)
         moved = occ.gp_Trsf.Translation(occ.Vec(*way, *[0.0] * (3 - len(way))))
         one.Identify(two, f"{pair[0]}", occ.IdentificationType.PERIODIC, moved)
 
@@ -67,8 +64,8 @@ def identify(sides: Any, first: int, domain: Domain, unit: float) -> None:
 def with_exact_images(mesh: Mesh, bodies: int, domain: Domain) -> Mesh:
     """Put the vertices of the second surface of each periodic pair exactly where those of the first are displaced to;
     raises MeshError if they are not near there."""
-    for pair in domain.periodic:
-        points, way = mesh.points.copy(), _way(domain, pair)
+    for pair, way in zip(domain.periodic, domain.lattice, strict=True):
+        points = mesh.points.copy()
         one, two = (surface_vertices(mesh, bodies + piece) for piece in pair)
         distance, place = scipy.spatial.cKDTree(points[one] + way).query(points[two])
         if len(one) != len(two) or np.max(distance) > _APART * np.linalg.norm(way):
@@ -83,10 +80,3 @@ def with_exact_images(mesh: Mesh, bodies: int, domain: Domain) -> Mesh:
 def on_periodic_surfaces(mesh: Mesh, bodies: int, domain: Domain) -> BoolArray:
     """Tell whether each facet is on a periodic surface, whose mesh stays that of its image, (F,)."""
     return np.isin(mesh.markers - bodies, [piece for pair in domain.periodic for piece in pair])
-
-
-def _way(domain: Domain, pair: tuple[int, int]) -> FloatArray:
-    one, two = (domain.pieces[piece].shape.plane for piece in pair)
-    assert one is not None
-    assert two is not None
-    return np.asarray(float((two.point - one.point) @ one.unit_normal) * one.unit_normal)

@@ -17,11 +17,11 @@ _APART = 1e-9
 def originals(
     points: FloatArray, pairs: Sequence[tuple[IntArray, IntArray]], ways: FloatArray
 ) -> tuple[IntArray, IntArray]:
-    """The one of ``points`` (N, d) that each is an image of, (N,), and by how many periods, (N, k); itself, and by none,
-    if it is no image.
+    """The one of ``points`` (N, d) that each is an image of, (N,), and by how many periods, (N, k); itself if it is no
+    image.
 
     Each of the k ``pairs`` has the numbers of points on two periodic surfaces, the second of which is the first
-    displaced by a way of ``ways`` (k, d) [length]. Where pairs meet, images have images. Raises MeshError where the
+    displaced by a way of ``ways`` (k, d) [length]. Images may have images, as pairs meet. Raises MeshError if the
     points of a pair do not match.
     """
     start, end = [np.empty(0, np.int64)], [np.empty(0, np.int64)]
@@ -51,7 +51,8 @@ def _places(images: FloatArray, points: FloatArray, allowed: float) -> IntArray:
     if not len(points):
         return np.empty(0, dtype=np.int64)
     distance, place = scipy.spatial.cKDTree(images).query(points)
-    if distance.max() > allowed:
-        found = f"points on two periodic surfaces that are up to {distance.max():.3g} off each other's images"
+    farthest = float(np.max(distance))
+    if farthest > allowed:
+        found = f"points on two periodic surfaces that are up to {farthest:.3g} off each other's images"
         raise MeshError("mesh", found, "the same facets on both", "Let the mesh be made for periodic surfaces.")
     return np.asarray(place)
