@@ -5,6 +5,7 @@ from __future__ import annotations
 import operator
 from abc import abstractmethod
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar, final
 
 import numpy as np
@@ -83,7 +84,7 @@ class TaylorHoodBackend(FluidBackend):
         from rigidfluid.taylor_hood.stepping.transfer import initial
         from rigidfluid.taylor_hood.system.discretisation import kinetic_energy
 
-        start = self.problem.initial
+        start, pose = self.problem.initial, mesh.images_of(pose)
         target = self._steady_discretisation(mesh) if start == "steady" else self._projecting_discretisation(mesh)
         given = target, self.options.tolerance, mesh, pose, twist
         if start == "rest":
@@ -98,7 +99,7 @@ class TaylorHoodBackend(FluidBackend):
     def struck(self, mesh: Mesh, pose: Pose, twist: Twist, step: Step) -> tuple[FluidState, float, Twist]:
         from rigidfluid.taylor_hood.stepping.transfer import initial, struck
 
-        given = self.options.tolerance, mesh, pose
+        given = self.options.tolerance, mesh, mesh.images_of(pose)
         motions = Twist(*np.split(step.prescribed_twist, [self.problem.dimension], axis=1))
         if not step.prescribed.all():
             fluid, _ = initial(self._projecting_discretisation(mesh), *given, twist)
@@ -118,7 +119,8 @@ class TaylorHoodBackend(FluidBackend):
         from rigidfluid.taylor_hood.stepping.response import response
 
         discretisation = self._discretisation(mesh, step.prescribed)
-        return response(discretisation, self._matrix(discretisation, fluid, mesh, step), step, impulses)
+        matrix = self._matrix(discretisation, fluid, mesh, step)
+        return response(discretisation, matrix, _on_mesh(step, mesh), impulses)
 
     @final
     def transfer(self, fluid: FluidState, old: Mesh, new: Mesh) -> tuple[FluidState, float]:
@@ -130,7 +132,8 @@ class TaylorHoodBackend(FluidBackend):
         earlier = kinetic_energy(present, fluid["points_previous"], fluid["velocity_previous"])
         target = self._projecting_discretisation(new)
         self.drop_factors()
-        moved = transfer(Flow(fluid, old, numbering, (before, earlier)), target, self.options.tolerance, new)
+        flow = Flow(fluid, old, numbering, (before, earlier), present.surfaces.pressure_drops)
+        moved = transfer(flow, target, self.options.tolerance, new)
         self.drop_factors()
         return moved, before - kinetic_energy(target, new.geometry, moved["velocity"])
 
@@ -168,8 +171,11 @@ class TaylorHoodBackend(FluidBackend):
 
         # All processes ask alike: the root asks, and shares the answer.
         samples = Samples(mesh, self.numbering_of(mesh), points if mesh.ranks.is_root else points[:0])
-        found = samples.quadratic(fluid["velocity"]), samples.linear(fluid["pressure"])
-        return mesh.ranks.bcast(found)
+        velocity, pressure = samples.quadratic(fluid["velocity"]), samples.linear(fluid["pressure"])
+        if mesh.periods is not None:
+            drops = self._any_discretisation(mesh).surfaces.pressure_drops(fluid["pressure"])
+            pressure = pressure + samples.periods @ drops
+        return mesh.ranks.bcast((velocity, pressure))
 
     @final
     def driving(self, fluid: FluidState, mesh: Mesh) -> FloatArray:
@@ -233,7 +239,8 @@ class TaylorHoodBackend(FluidBackend):
         matrix = self._matrix(discretisation, fluid, mesh, step)
         attempt = self._latest_attempt
         guess = attempt[1] if attempt is not None and attempt[0] is fluid else None
-        advanced = advance(Equations(discretisation, matrix, fluid, mesh, step), tolerance, guess)
+        equations = Equations(discretisation, matrix, fluid, mesh, _on_mesh(step, mesh))
+        advanced = advance(equations, tolerance, guess)
         self._latest_attempt = fluid, advanced.fluid
         return advanced
 
@@ -243,7 +250,7 @@ class TaylorHoodBackend(FluidBackend):
 
         asked = fluid, mesh, step
         if self._latest_matrix is None or any(map(operator.is_not, self._latest_matrix[0], asked)):
-            self._latest_matrix = asked, step_matrix(discretisation, fluid, mesh, step)
+            self._latest_matrix = asked, step_matrix(discretisation, fluid, mesh, _on_mesh(step, mesh))
         return self._latest_matrix[1]
 
     def _projecting_discretisation(self, mesh: Mesh) -> Discretisation:
@@ -259,3 +266,8 @@ class TaylorHoodBackend(FluidBackend):
         """A discretisation on this topology, whichever bodies are prescribed."""
         self.numbering_of(mesh)
         return self._projecting_discretisation(mesh) if self._latest is None else self._latest[1]
+
+
+def _on_mesh(step: Step, mesh: Mesh) -> Step:
+    """The step with the pose of the bodies' images that are on the ``mesh``."""
+    return step if mesh.periods is None else replace(step, pose=mesh.images_of(step.pose))

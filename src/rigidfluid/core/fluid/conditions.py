@@ -106,6 +106,11 @@ class BoundaryCondition(ABC):
         return self
 
     @property
+    def is_seam(self) -> bool:
+        """Tell whether it is only where a periodic domain is cut open, and its facets may be off the flat piece."""
+        return False
+
+    @property
     def holds_all(self) -> bool:
         """Tell whether the whole velocity is given."""
         return self.prescribes_normal and self.prescribes_tangential
@@ -228,6 +233,7 @@ class Periodic(BoundaryCondition):
     prescribes_normal = False
     prescribes_tangential = False
     passes = False
+    is_seam = True
 
     @property
     def data(self) -> Value:

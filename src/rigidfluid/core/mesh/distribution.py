@@ -48,7 +48,7 @@ def parts_of(mesh: Mesh, owner: IntArray) -> list[Mesh]:
     count = int(owner.max()) + 1
     if count == 1:
         return [mesh]
-    facet_owner = owner[_cells_of_facets(mesh)]
+    facet_owner = owner[cells_of_facets(mesh)]
     vertices = [np.unique(mesh.cells[owner == rank]) for rank in range(count)]
     lowest = np.empty(len(mesh.points), dtype=np.int64)
     for rank in reversed(range(count)):
@@ -64,12 +64,14 @@ def whole(mesh: Mesh) -> Mesh | None:
     if mesh.part is None:
         return mesh
     pieces = mesh.ranks.gather(_piece(mesh))
-    return None if pieces is None else _joined(pieces)
+    return None if pieces is None else replace(_joined(pieces), periods=mesh.periods)
 
 
 def joined(parts: Sequence[Mesh]) -> Mesh:
     """Join all parts of a mesh, in the order of ranks, to the `whole`."""
-    return parts[0] if len(parts) == 1 else _joined([_piece(part) for part in parts])
+    if len(parts) == 1:
+        return parts[0]
+    return replace(_joined([_piece(part) for part in parts]), periods=parts[0].periods)
 
 
 def _piece(mesh: Mesh) -> _Piece:
@@ -134,6 +136,7 @@ def _part(mesh: Mesh, vertices: IntArray, cells: IntArray, facets: IntArray, own
         markers=mesh.markers[facets],
         part=MeshPart(ALONE, vertices, cells, facets, owned[vertices], counts),
         curved=_part_of_curves(mesh.curved, vertices, own_cells),
+        periods=mesh.periods,
     )
 
 
@@ -151,7 +154,7 @@ def _part_of_curves(curved: CurvedEdges | None, vertices: IntArray, cells: IntAr
     return CurvedEdges(edges[held], curved.surface[inside][held], curved.middles[inside][held])
 
 
-def _cells_of_facets(mesh: Mesh) -> IntArray:
+def cells_of_facets(mesh: Mesh) -> IntArray:
     """The cell that each boundary facet belongs to, (F,): the one that has all of its vertices."""
     cells, facets = (_incidence(simplices, len(mesh.points)) for simplices in (mesh.cells, mesh.facets))
     common = (facets @ cells.T).tocoo()

@@ -86,7 +86,7 @@ class FlowOnMesh(Flow):
     """Flow by the values at a ``mesh``'s vertices, ``velocity`` (N, d) and ``pressure`` (N,), linear in its cells.
 
     Slopes at a vertex are the mean of those in the cells around it, by volume. Points outside the mesh take the values
-    of the nearest cell.
+    of the nearest cell, or where the flow is periodic those of their image.
     """
 
     def __init__(self, mesh: Mesh, velocity: FloatArray, pressure: FloatArray, twist: Twist) -> None:
@@ -121,6 +121,9 @@ class FlowOnMesh(Flow):
         return CellFinder(self._mesh.points, self._mesh.cells)
 
     def _between(self, values: FloatArray, points: FloatArray) -> FloatArray:
+        if self._mesh.periods is not None:
+            ways = self._mesh.periods.ways
+            points = points + self._finder.periods_ahead(points, ways) @ ways
         cell, coordinates = self._finder.find(points)
         return np.asarray(np.einsum("nb,nb...->n...", coordinates, values[self._mesh.cells[cell]]))
 

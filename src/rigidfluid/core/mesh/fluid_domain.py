@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
-from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.mechanics.frames import distance_to_body, to_body_frame, to_world
 from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import Pose
+from rigidfluid.core.model.types import Mesh, Pose
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,23 +37,54 @@ class FluidDomain:
     def closest_points(self, surface: int, points: FloatArray) -> FloatArray:
         """The closest points (N, d) of a surface, by its number, to ``points`` (N, d) [length]."""
         if surface < len(self.bodies):
-            in_frame = to_body_frame(self.pose, surface, points)
-            return to_world(self.pose, surface, self.bodies[surface].closest_point(in_frame))
+            return self._closest_on_body(surface, points)
         return self.domain.pieces[surface - len(self.bodies)].shape.closest_point(points)
+
+    def _closest_on_body(self, body: int, points: FloatArray) -> FloatArray:
+        """The closest points (N, d) of a body and its images."""
+        found, best = np.empty_like(points), np.full(len(points), np.inf)
+        for way in self.images:
+            in_frame = to_body_frame(self.pose, body, points - way)
+            closest = way + to_world(self.pose, body, self.bodies[body].closest_point(in_frame))
+            distance = np.linalg.norm(closest - points, axis=1)
+            nearer = ~(distance >= best)
+            found[nearer], best[nearer] = closest[nearer], distance[nearer]
+        return found
+
+    @property
+    def images(self) -> FloatArray:
+        """Displacements of the bodies' images from their poses, (c, d), none first: those in all periods around the
+        poses [length]."""
+        ways = self.domain.lattice
+        steps = sorted(product((-1, 0, 1), repeat=len(ways)), key=lambda step: sum(map(abs, step)))
+        return np.asarray(np.array(steps, dtype=float).reshape(len(steps), len(ways)) @ ways)
+
+    def periods_outside(self) -> IntArray:
+        """Whole periods that the bodies' centres are away from the domain, (n, k)."""
+        ways, position = self.domain.lattice, self.pose.position
+        firsts = [self.domain.pieces[first].shape for first, _ in self.domain.periodic]
+        ahead = [(position - shape.closest_point(position)) @ way for shape, way in zip(firsts, ways, strict=True)]
+        outside = np.floor(np.reshape(ahead, (len(ways), len(position))).T / (ways**2).sum(axis=1))
+        return np.asarray(outside.astype(np.int64))
+
+    def placed_on(self, mesh: Mesh) -> FluidDomain:
+        """The same with the images of the bodies that are on a ``mesh``."""
+        return self if mesh.periods is None else replace(self, pose=mesh.images_of(self.pose))
 
     def body_distances(self, points: FloatArray) -> FloatArray:
         """Distance of points (N, d) from each body, negative inside, (n, N) [length]."""
         return np.array([distance_to_body(self.pose, i, body, points) for i, body in enumerate(self.bodies)])
 
     def two_nearest_bodies(self, points: FloatArray, reach: float) -> tuple[FloatArray, FloatArray]:
-        """Distances to the nearest and to the second nearest body, each (N,), infinite where beyond ``reach``
-        [length]."""
+        """Distances to the nearest and to the second nearest body or image of one, each (N,), infinite where beyond
+        ``reach`` [length]."""
         first, second = np.full((2, len(points)), np.inf)
         columns = np.ascontiguousarray(points.T)
-        for i, body in enumerate(self.bodies):
-            square = sum((column - place) ** 2 for column, place in zip(columns, self.pose.position[i], strict=True))
+        for (i, body), way in product(enumerate(self.bodies), self.images):
+            centre = self.pose.position[i] + way
+            square = sum((column - place) ** 2 for column, place in zip(columns, centre, strict=True))
             near = np.flatnonzero(square < (np.minimum(reach, second) + body.bounding_radius) ** 2)
-            distance = np.maximum(distance_to_body(self.pose, i, body, points[near]), 0.0)
+            distance = np.maximum(distance_to_body(self.pose, i, body, points[near] - way), 0.0)
             second[near] = np.minimum(second[near], np.maximum(first[near], distance))
             first[near] = np.minimum(first[near], distance)
         return first, second
@@ -67,8 +99,10 @@ class FluidDomain:
     def gap_widths(self, points: FloatArray) -> FloatArray:
         """Distance to the nearest body and that to the next surface together, (N,) [length]."""
         first, second = self.two_nearest_bodies(points, np.inf)
-        for piece in self.domain.pieces:
-            np.minimum(second, np.abs(piece.shape.signed_distance(points)), out=second)
+        periodic = [number for pair in self.domain.periodic for number in pair]
+        for number, piece in enumerate(self.domain.pieces):
+            if number not in periodic:
+                np.minimum(second, np.abs(piece.shape.signed_distance(points)), out=second)
         return first + second
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
@@ -10,6 +12,9 @@ INSIDE = -1e-10
 """Least barycentric coordinate of a point that counts as inside a cell [1]."""
 
 _CANDIDATES = (3, 16, 64, 512)
+
+_FARTHEST = 2
+"""Largest number of periods along each way in which an image is looked for."""
 
 
 class CellFinder:
@@ -26,6 +31,24 @@ class CellFinder:
         """The cell of each target (N,) and its barycentric coordinates there (N, d+1).
 
         A target outside the mesh takes the cell that it is least outside of, with its coordinates moved inside.
+        """
+        cell, coordinates = self._nearest(targets)
+        return cell, move_inside(coordinates)
+
+    def periods_ahead(self, targets: FloatArray, ways: FloatArray) -> IntArray:
+        """Numbers of the ``ways`` (k, d) from each target to its image in the mesh, (N, k)."""
+        ahead = np.zeros((len(targets), len(ways)), dtype=np.int64)
+        depth = self._nearest(targets)[1].min(axis=1)
+        for step in sorted(product(range(-_FARTHEST, _FARTHEST + 1), repeat=len(ways)), key=_length):
+            outside = np.flatnonzero(depth < INSIDE)
+            found = self._nearest(targets[outside] + np.array(step) @ ways)[1].min(axis=1)
+            better = found > depth[outside]
+            ahead[outside[better]], depth[outside[better]] = step, found[better]
+        return ahead
+
+    def _nearest(self, targets: FloatArray) -> tuple[IntArray, FloatArray]:
+        """The same as `find` with coordinates as they are.
+
         The cells tried are those with the nearest centres, more of them for the targets that are not found yet.
         """
         corners, cells = self._corners, len(self._corners)
@@ -43,7 +66,11 @@ class CellFinder:
             missing = missing[coordinates[missing].min(axis=1) < INSIDE]
             if len(missing) == 0:
                 break
-        return cell, move_inside(coordinates)
+        return cell, coordinates
+
+
+def _length(step: tuple[int, ...]) -> int:
+    return sum(abs(each) for each in step)
 
 
 def locate(points: FloatArray, cells: IntArray, targets: FloatArray) -> tuple[IntArray, FloatArray]:

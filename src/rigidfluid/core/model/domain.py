@@ -38,7 +38,7 @@ class Domain(SpatialPart):
     kind: ClassVar[str] = "domain"
     periodic: tuple[tuple[int, int], ...] = ()
     """Pairs of flat pieces, by their numbers, that are periodic: what leaves by one comes in by the other.
-    The second is the first displaced; their facets match, and stay."""
+    The second is the first displaced. A mesh may be cut open elsewhere, so that their facets are not on the pieces."""
 
     @property
     @abstractmethod

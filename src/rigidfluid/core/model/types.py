@@ -183,10 +183,19 @@ class CurvedEdges:
 
 
 @dataclass(frozen=True, slots=True)
+class Periods:
+    """Periods of a mesh with periodic surfaces: ``ways`` (k, d) from what is on the mesh to its next images [length],
+    and the ``winding`` (n, k): by how many of each way a body's pose is ahead of its image on the mesh."""
+
+    ways: FloatArray
+    winding: IntArray
+
+
+@dataclass(frozen=True, slots=True)
 class Mesh:
     """Simplices: ``points`` (N, d) [length], ``cells`` (M, d+1), boundary ``facets`` (F, d) and ``markers`` (F,), the
     number of the surface that each facet lies on. All edges are straight but those ``curved``. ``part`` is None where
-    it is the whole mesh."""
+    it is the whole mesh, ``periods`` where no surfaces are periodic."""
 
     points: FloatArray
     cells: IntArray
@@ -194,6 +203,7 @@ class Mesh:
     markers: IntArray
     part: MeshPart | None = None
     curved: CurvedEdges | None = None
+    periods: Periods | None = None
 
     @staticmethod
     def empty(dimension: int) -> Mesh:
@@ -210,6 +220,12 @@ class Mesh:
     def geometry(self) -> FloatArray:
         """All that says where the mesh is: the vertices, then the middles of curved edges, (N + K, d) [length]."""
         return self.points if self.curved is None else np.concatenate([self.points, self.curved.middles])
+
+    def images_of(self, pose: Pose) -> Pose:
+        """Pose of the bodies' images that are on this mesh, with the bodies themselves at ``pose``."""
+        if self.periods is None:
+            return pose
+        return Pose(pose.position - self.periods.winding @ self.periods.ways, pose.orientation)
 
     def moved_to(self, geometry: FloatArray) -> Mesh:
         """The same cells elsewhere, at a ``geometry`` (N + K, d) [length]."""

@@ -33,6 +33,7 @@ _MESH: Shapes = {
     **{"points": "Pd", "cells": "Ms", "facets": "Fd", "markers": "F"},
     "part": {"vertices": "P", "cells": "M", "facets": "F", "owned": "P", "counts": "3"},
     "curved": {"vertices": "K2", "surface": "K", "middles": "Kd"},
+    "periods": {"ways": "wd", "winding": "nw"},
 }
 
 _STATE: Shapes = {
@@ -76,9 +77,12 @@ _UNKNOWN = ("radius_a", "radius_b", "effective_radius", "load_before", "quality"
 _OF_BACKENDS = ("memory/", "state/fluid/")
 """Arrays of a backend, which may have any names and signs."""
 
+_SIGNED = ("winding",)
+"""Whole numbers that may be below 0, as no others are."""
+
 _POSITIVE = ("state/past/step", "ranks")
 _NOT_NEGATIVE = ("elapsed", "cpu_time", "highest_speed", "seconds", "times")
-"""Numbers that are above 0, and those that are no less; whole ones are none below 0 anyhow."""
+"""Numbers that are above 0, and those that are no less, as whole ones are anyhow."""
 
 
 def require_sound(checkpoint: Any) -> None:
@@ -142,6 +146,8 @@ def _require_range(name: str, values: Any) -> None:
         _require(name, values, is_right, "numbers, infinite ones among them" if may_be_infinite else "finite numbers")
     if name in _POSITIVE:
         _require(name, values, values > 0, "a number above 0")
+    elif parts[-1] in _SIGNED:
+        return
     elif values.dtype.kind in "iu" or not {parts[0], parts[-1]}.isdisjoint(_NOT_NEGATIVE):
         _require(name, values, values >= 0, "numbers of 0 or more")
 

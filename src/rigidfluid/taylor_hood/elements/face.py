@@ -37,9 +37,14 @@ class Face:
     ) -> Face:
         """Face of these ``facets``; unless it is flat or a wall they are turned so that their normals point into the
         fluid."""
-        if condition.normal is None and not condition.is_wall:
+        if (condition.normal is None or condition.is_seam) and not condition.is_wall:
             facets = into_fluid(facets, mesh.cells, mesh.points)
         return cls(condition, facets, numbering.facet_nodes(facets), nodes)
+
+    @property
+    def _normal(self) -> FloatArray | None:
+        """The normal of all facets, None where each has its own."""
+        return None if self.condition.is_seam else self.condition.normal
 
     @cached_property
     def axis(self) -> int | None:
@@ -52,15 +57,15 @@ class Face:
 
         ``node_points`` (nodes, d) [length].
         """
-        if self.condition.normal is None:
+        if self._normal is None:
             return area_vectors(node_points[self.facet_nodes])
-        return np.asarray(facet_weights(node_points, self.facets)[..., None] * self.condition.normal)
+        return np.asarray(facet_weights(node_points, self.facets)[..., None] * self._normal)
 
     def normals(self, node_points: FloatArray) -> FloatArray:
         """Unit normals into the fluid of each facet at its nodes, (F, 3 | 6, d), for ``node_points`` (nodes, d)."""
-        if self.condition.normal is None:
+        if self._normal is None:
             return normals_at_nodes(node_points[self.facet_nodes])
-        return np.broadcast_to(self.condition.normal, (*self.facet_nodes.shape, len(self.condition.normal)))
+        return np.broadcast_to(self._normal, (*self.facet_nodes.shape, len(self._normal)))
 
     def inflow(self, node_points: FloatArray, velocity: FloatArray) -> FloatArray:
         """The part of ∫ u·n of each facet's nodes, (F, 3 | 6) [length^d/time], n into the fluid.
@@ -75,8 +80,8 @@ class Face:
         ``node_points``, ``velocity`` u and ``carrier`` c (nodes, d) [length, length/time].
         """
         shapes, area = area_at_points(node_points[self.facet_nodes])
-        if self.condition.normal is not None:
-            area = np.linalg.norm(area, axis=2, keepdims=True) * self.condition.normal
+        if self._normal is not None:
+            area = np.linalg.norm(area, axis=2, keepdims=True) * self._normal
         u, c = (shapes @ field[self.facet_nodes] for field in (velocity, carrier))
         return 0.5 * float(np.sum(np.sum(u * u, axis=2) * np.sum(c * area, axis=2)))
 
@@ -86,6 +91,6 @@ class Face:
         ``node_points``, ``velocity`` (nodes, d) [length, length/time].
         """
         inflow = self.inflow(node_points, velocity)
-        if self.condition.normal is None:
+        if self._normal is None:
             return np.array([inflow.sum(), 0.0])
         return np.array([np.maximum(inflow, 0.0).sum(), np.minimum(inflow, 0.0).sum()])

@@ -5,18 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import scipy
 
+from rigidfluid.core.geometry import images
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
-from rigidfluid.errors import MeshError
 from rigidfluid.taylor_hood.elements.face import Face
 
-_APART = 1e-9
-"""A node and its image may be so much nearer or farther than the faces, over the size of the domain."""
 
-
-def originals(faces: Sequence[Face], node_points: FloatArray) -> IntArray:
-    """Node that each node is an image of, (nodes,); itself if it is none.
+def originals(faces: Sequence[Face], node_points: FloatArray) -> tuple[IntArray, IntArray]:
+    """Node that each node is an image of, (nodes,), and by how many periods of each of k pairs, (nodes, k); itself and
+    by none, if it is none.
 
     Parameters
     ----------
@@ -30,20 +27,7 @@ def originals(faces: Sequence[Face], node_points: FloatArray) -> IntArray:
     MeshError
         If the facets of a pair do not match.
     """
-    found = np.arange(len(node_points))
     by_surface = {face.condition.surface: face for face in faces}
-    for face in faces:
-        if face.condition.image is None:
-            continue
-        images, normal = by_surface[face.condition.image].nodes, face.condition.normal
-        assert normal is not None
-        way = normal * float((node_points[images[0]] - node_points[face.nodes[0]]) @ normal)
-        distance, place = scipy.spatial.cKDTree(node_points[face.nodes] + way).query(node_points[images])
-        if len(images) != len(face.nodes) or np.max(distance) > _APART * np.ptp(node_points, axis=0).max():
-            name = f"surfaces {face.condition.name!r} and {by_surface[face.condition.image].condition.name!r}"
-            message = f"{len(face.nodes)} and {len(images)} nodes, up to {np.max(distance):.3g} apart"
-            raise MeshError(name, message, "the same facets on both", "Let the mesh be made for periodic surfaces.")
-        found[images] = face.nodes[place]
-    while np.any(found[found] != found):  # where pairs meet, an image has an image
-        found = found[found]
-    return found
+    pairs = [(face.nodes, by_surface[face.condition.image].nodes) for face in faces if face.condition.image is not None]
+    ways = [node_points[second].mean(axis=0) - node_points[first].mean(axis=0) for first, second in pairs]
+    return images.originals(node_points, pairs, np.array(ways).reshape(-1, node_points.shape[1]))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
-from rigidfluid.core.mesh.location import locate
+from rigidfluid.core.mesh.location import CellFinder, locate
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.taylor_hood.elements.location import barycentric, locate_on_curves, quadratic_basis
 from rigidfluid.taylor_hood.elements.numbering import Numbering
@@ -22,10 +22,18 @@ class _Served:
 
 
 class Samples:
-    """Fields on a mesh, evaluated at ``targets`` (N, d) of this process; outside the mesh in the nearest cell."""
+    """Fields on a mesh, evaluated at ``targets`` (N, d) of this process; outside the mesh in the nearest cell.
+
+    On a mesh with periods they are evaluated at the targets' images there, which are so many ``periods`` (N, k) ahead.
+    """
 
     def __init__(self, mesh: Mesh, numbering: Numbering, targets: FloatArray) -> None:
         self._numbering, self._ranks, self._count = numbering, mesh.ranks, len(targets)
+        self.periods = np.zeros((len(targets), 0), dtype=np.int64)
+        if mesh.periods is not None:
+            ways = mesh.periods.ways
+            self.periods = CellFinder(mesh.points, mesh.cells).periods_ahead(targets, ways)
+            targets = targets + self.periods @ ways
         asked = _candidates(mesh, targets)
         answers = [_located(mesh, numbering, points) for points in self._ranks.alltoall([targets[to] for to in asked])]
         depths = self._ranks.alltoall([depth for _, depth in answers])

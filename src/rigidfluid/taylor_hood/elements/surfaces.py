@@ -71,7 +71,7 @@ class Surfaces:
         """Axes of nodes on oblique and curved faces; ``velocity_free`` is of components along a node's own axes
         there."""
         self.velocity_free[self.frames.nodes] = self.frames.free
-        self.originals = originals(self.faces, numbering.node_points(mesh.geometry))
+        self.originals, self._periods = originals(self.faces, numbering.node_points(mesh.geometry))
         """The nodes that all nodes are images of, on periodic faces; else themselves."""
         self.images = np.flatnonzero(self.originals != np.arange(numbering.nodes))
         self.dirichlet_nodes = np.setdiff1d(
@@ -125,13 +125,22 @@ class Surfaces:
         )
 
     def pressure_jump(self, time: float, points: FloatArray) -> FloatArray:
-        """Excess of the pressure at vertices (vertices, d) of periodic faces over that at their images, (vertices,)."""
+        """Excess of the pressure at vertices (vertices, d) over that at the vertex that they are images of,
+        (vertices,)."""
         jump = np.zeros(len(points))
-        for face in self.faces:
-            if face.condition.image is not None:
-                vertices = face.nodes[face.nodes < len(points)]
-                jump[vertices] += face.condition.pressure(time, points[vertices])
+        pairs = [face.condition for face in self.faces if face.condition.image is not None]
+        for condition, ahead in zip(pairs, self._periods[: len(points)].T, strict=True):
+            images = np.flatnonzero(ahead)
+            drop = condition.pressure(time, points[self.originals[images]])
+            jump[images] -= ahead[images] * drop
         return jump
+
+    def pressure_drops(self, pressure: FloatArray) -> FloatArray:
+        """Mean drops of a ``pressure`` (vertices,) from the first to the second face of each periodic pair, (k,)."""
+        ahead = self._periods[: len(pressure)]
+        images = np.flatnonzero(ahead.any(axis=1))
+        fall = pressure[self.originals[images]] - pressure[images]
+        return np.asarray(np.linalg.lstsq(ahead[images].astype(float), fall, rcond=None)[0])
 
     def prescribed_part(self, velocity: FloatArray) -> FloatArray:
         """The part of a ``velocity`` (nodes, d) that is not free; zero on oblique, curved and periodic faces, where

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,13 +29,14 @@ _MOST_SCALED = 1.25
 
 @dataclass(frozen=True, eq=False)
 class Flow:
-    """State of a ``fluid`` on a ``mesh`` with this ``numbering``, and its kinetic ``energies``: now, and one step
-    before [energy]."""
+    """State of a ``fluid`` on a ``mesh`` with this ``numbering``, its kinetic ``energies``, now and one step before
+    [energy], and the ``drops`` (k,) of its pressure across the periods."""
 
     fluid: FluidState
     mesh: Mesh
     numbering: Numbering
     energies: tuple[float, float]
+    drops: Callable[[FloatArray], FloatArray]
 
 
 def transfer(flow: Flow, target: Discretisation, tolerance: float, new: Mesh) -> FluidState:
@@ -52,12 +54,18 @@ def transfer(flow: Flow, target: Discretisation, tolerance: float, new: Mesh) ->
     displacement = on_nodes.quadratic(source.node_points(old.geometry - fluid["points_previous"]))
     moved = dict(fluid)
     moved["points_previous"] = new.geometry - numbering.geometry_of(displacement)
+    for suffix in ("", "_previous"):
+        moved["position" + suffix] = fluid["position" + suffix] + _bodies_displaced(old, new)
     levels = ("", new.geometry, flow.energies[0]), ("_previous", moved["points_previous"], flow.energies[1])
     correction = rotational = np.zeros((numbering.nodes, numbering.dimension))
     for suffix, points, energy in levels:
-        moved["pressure" + suffix] = on_nodes.linear(fluid["pressure" + suffix])[: numbering.vertices]
+        pressure = fluid["pressure" + suffix]
+        carried = on_nodes.linear(pressure)
+        if old.periods is not None:
+            carried += on_nodes.periods @ flow.drops(pressure)
+        moved["pressure" + suffix] = carried[: numbering.vertices]
         velocity = on_nodes.quadratic(fluid["velocity" + suffix])
-        position, twist = fluid["position" + suffix], fluid["twist" + suffix]
+        position, twist = moved["position" + suffix], fluid["twist" + suffix]
         every = np.ones(len(twist), dtype=bool)
         target.surfaces.move_with_bodies(velocity, numbering.node_points(points), position, twist, every)
         projection = target.projection(points, position)
@@ -87,6 +95,13 @@ def among_other_bodies(
     velocity = project(target, tolerance, velocity, geometry, position)
     flow = {"velocity": velocity, "velocity_previous": velocity, "pressure": pressure, "pressure_previous": pressure}
     return {**rest, **flow}
+
+
+def _bodies_displaced(old: Mesh, new: Mesh) -> FloatArray:
+    """Displacement of the bodies' images from the ``old`` mesh to those on the ``new`` one, (n, d) or () [length]."""
+    if old.periods is None or new.periods is None:
+        return np.zeros(())
+    return (old.periods.winding - new.periods.winding) @ old.periods.ways
 
 
 def initial(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twist: Twist) -> tuple[FluidState, float]:

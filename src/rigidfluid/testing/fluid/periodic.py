@@ -11,6 +11,9 @@ import pytest
 from rigidfluid.core.fluid.conditions import Periodic, Slip, TimeValue, Value, no_pressure
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.mesh.adaptation.recut import neighbours, recut
+from rigidfluid.core.mesh.adaptation.smooth_cut import smooth_cut
+from rigidfluid.core.mesh.generation.periodic import Seams
 from rigidfluid.core.mesh.topology import boundary_facets
 from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.testing.fluid.base import FluidContract
@@ -38,6 +41,18 @@ class PeriodicContract(FluidContract):
         along = DROP * height * (1.0 - height) / (2.0 * VISCOSITY)
         self.assert_close(velocity, np.outer(along, np.eye(dimension)[0]))
         self.assert_close(pressure, DROP * (0.5 - samples(dimension)[:, 0]), scale=10.0)
+        self.assert_close(flow.advance.boundary_power, flow.advance.dissipation)
+
+    def test_the_seam_of_a_periodic_mesh_may_be_anywhere(self, dimension: int) -> None:
+        """The same exact flow where the periodic facets are bent, and the pressure goes on past the box."""
+        posed = self._periodic(problem(dimension, inertia=False), (0, 2) if dimension == 3 else (0,))
+        flow = self.empty(posed, _bent_seam(dimension)).after(None)
+        fields = flow.backend.fields(flow.fluid, flow.mesh)
+        assert fields.points[:, 0].max() > 1.2
+        along = DROP * fields.points[:, 1] * (1.0 - fields.points[:, 1]) / (2.0 * VISCOSITY)
+        self.assert_close(fields.velocity, np.outer(along, np.eye(dimension)[0]))
+        pressure = fields.pressure + DROP * fields.points[:, 0]
+        self.assert_close(pressure, pressure[0], scale=10.0)
         self.assert_close(flow.advance.boundary_power, flow.advance.dissipation)
 
     def test_two_periods_are_twice_one_period(self, dimension: int) -> None:
@@ -145,6 +160,17 @@ class PeriodicContract(FluidContract):
             conditions[2 * axis] = Periodic(first.surface, first.name, first.normal, second.surface, jump)
             conditions[2 * axis + 1] = Periodic(second.surface, second.name, second.normal)
         return replace(posed, conditions=tuple(conditions))
+
+
+def _bent_seam(dimension: int) -> Mesh:
+    """The box, periodic across x and in 3D z, cut open along a curve instead of along x = 0."""
+    mesh, axes = box(dimension, 6 if dimension == 2 else 4), np.array((0, 2) if dimension == 3 else (0,))
+    seams = Seams(2 * axes, 2 * axes + 1, np.eye(dimension)[axes])
+    centres = mesh.points[mesh.cells].mean(axis=1)
+    shift = np.zeros((len(mesh.cells), len(axes)), dtype=np.int64)
+    shift[:, 0] = centres[:, 0] < 0.3 + 0.3 * np.sin(2.0 * np.pi * centres[:, 1])
+    free = np.zeros(len(mesh.cells), dtype=bool)
+    return recut(mesh, seams, smooth_cut(shift, neighbours(mesh, seams), free))
 
 
 def _twice(dimension: int) -> Mesh:

@@ -36,7 +36,8 @@ def test_quality(monkeypatch, asked, made, worst, anew):
     system: Any = None
     mesh_updater = MeshUpdater(system, Sizes(0.1, 0.1), Renewal(asked, 1))
     monkeypatch.setattr(mesh_updater, "_map", lambda reference: (still, None))
-    reference = SimpleNamespace(gaps=None, mesh=None, pose=None, quality=made, tick=0)
+    mesh = SimpleNamespace(periods=None, images_of=lambda pose: pose)
+    reference = SimpleNamespace(gaps=None, mesh=mesh, pose=None, quality=made, tick=0)
     state: Any = SimpleNamespace(reference=reference, gaps=None, pose=None, tick=1)
     assert mesh_updater.needs_remesh(state, state) is anew
 

@@ -25,10 +25,11 @@ from rigidfluid.core.mesh.generation.periodic import with_exact_images
 from rigidfluid.core.mesh.generation.refine_surface import LONGEST, long_edges
 from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.model.types import Mesh
+from rigidfluid.core.output.checkpoint import read_checkpoint
 from rigidfluid.core.run.run import run
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.domains.box import Box, BoxOptions
-from rigidfluid.errors import MeshError, SceneError, StepError
+from rigidfluid.errors import MeshError, SceneError
 
 ENDS = [{"on": "left", "type": "periodic", "pressure_drop": 6.0}, {"on": "right", "type": "periodic"}]
 
@@ -128,18 +129,37 @@ def test_a_run_starts_with_the_steady_flow_that_the_drop_drives() -> None:
     assert power[-1] > 0.01
 
 
-def test_a_run_is_resumed_to_the_last_bit(tmp_path: Path) -> None:
-    run(channel(), tmp_path / "whole")
-    run(channel(time={"end": 0.4, "step": 0.04}), tmp_path / "parts")
-    run(channel(), tmp_path / "parts", resume=True)
+def test_a_run_across_a_periodic_surface_is_resumed_to_the_last_bit(tmp_path: Path) -> None:
+    """The ball goes on to beyond the domain, and the mesh that is made then has its image."""
+    body = {"type": "sphere", "radius": 0.15, "density": 1.0, "position": [1.82, 0.6]}
+    tables = {"body": [body], "mesh": {"size": 0.2, "size_body": 0.06, "remesh_every": 0.2}, "output": {"every": 0.2}}
+    history = run(channel(**tables), tmp_path / "whole")
+    assert history.bodies["x"][-1] > 2.1
+    state = read_checkpoint(tmp_path / "whole" / "state.h5").state
+    assert state.mesh.periods is not None
+    assert state.mesh.periods.winding.tolist() == [[1]]
+    assert state.mesh.images_of(state.pose).position[0, 0] == pytest.approx(history.bodies["x"][-1] - 2.0, abs=1e-6)
+    run(channel(**tables, time={"end": 0.6, "step": 0.04}), tmp_path / "parts")
+    run(channel(**tables), tmp_path / "parts", resume=True)
     for name in ("bodies.csv", "energy.csv"):
         assert (tmp_path / "parts" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
 
 
-def test_a_body_that_comes_to_a_periodic_surface_ends_the_run_by_name() -> None:
-    body = {"type": "sphere", "radius": 0.15, "density": 1.0, "position": [1.7, 0.6], "name": "swimmer"}
-    with pytest.raises(StepError, match=r"body 'swimmer' .*reaches the periodic 'right'"):
-        run(channel(body=[body]))
+@pytest.mark.long
+def test_two_balls_cross_periodic_surfaces_again_and_again() -> None:
+    """The same path as from half a period further on, but for the error of other meshes; the energy balance closes."""
+    mesh, time = {"size": 0.15, "size_body": 0.05}, {"end": 12.0, "step": 0.04}
+    paths = []
+    for start in ((0.3, 1.2), (1.3, 0.2)):
+        places = [[start[0], 0.55], [start[1], 0.25]]
+        balls = [{"type": "sphere", "radius": 0.12, "density": 1.0, "position": place} for place in places]
+        history = run(channel(body=balls, mesh=mesh, time=time, output={"every": 12.0}))
+        assert history.summary["remeshes"] > 5
+        assert history.summary["failed_remeshes"] == 0
+        assert abs(history.energy["residual"][-1]) < 1e-4 * history.energy["boundary"][-1]
+        paths.append(np.reshape(history.bodies["x"], (-1, 2))[-1] - start)
+    assert paths[0][0] > 8.0
+    np.testing.assert_allclose(paths[0], paths[1], atol=0.01 * 2.0)
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
-from itertools import chain
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from rigidfluid.core.geometry.value_types import describe
 from rigidfluid.core.mesh.adaptation.coarsening import has_coarsened, is_due, relative_sizes
 from rigidfluid.core.mesh.adaptation.kept_cells import LAYERS
 from rigidfluid.core.mesh.adaptation.mesh_motion import MeshMotion
-from rigidfluid.core.mesh.adaptation.remesh import initial_mesh, remesh
+from rigidfluid.core.mesh.adaptation.remesh import initial_mesh, remesh, well_cut
 from rigidfluid.core.mesh.distribution import distributed, whole
 from rigidfluid.core.mesh.flow import flow_on
 from rigidfluid.core.mesh.fluid_domain import FluidDomain, fluid_domain_at
@@ -95,7 +94,8 @@ class MeshUpdater:
             sizes = with_fields_at_rest(self._sizes, self._fields, around)
             mesh = Mesh.empty(s.dimension)
             if ranks.is_root:
-                mesh = self._curved(initial_mesh(around, sizes, self._inserter), around)
+                mesh = initial_mesh(around, sizes, self._inserter)
+                mesh = self._curved(mesh, around.placed_on(mesh))
         return distributed(mesh, ranks)
 
     def first_reference(self, mesh: Mesh, gaps: FloatArray) -> Reference:
@@ -105,7 +105,6 @@ class MeshUpdater:
     def deform(self, state: State, pose: Pose) -> Mesh:
         """The mesh when the bodies are at ``pose``; raises StepRejected where a cell is tangled."""
         _refuse_to_leave(self.system, pose)
-        self._refuse_to_cross(pose)
         geometry, worst = self._placed(state.reference, pose)
         if worst < TANGLED:
             raise StepRejected(
@@ -157,7 +156,10 @@ class MeshUpdater:
         with ranks.raise_on_all():
             made = Mesh.empty(s.dimension)
             if present is not None:
-                around = fluid_domain_at(s, state.pose)
+                around = fluid_domain_at(s, present.images_of(state.pose))
+                if present.periods is not None:
+                    present = well_cut(present, around, self._sizes, present.periods.winding)
+                    around = fluid_domain_at(s, present.images_of(state.pose))
                 sizes = self._sizes if flow is None else with_fields(self._sizes, self._fields, around, flow)
                 if around.domain.dimension == 3:  # in 2D what gaps leave behind costs next to nothing
                     present = coarsen_surface(present, around, sizes)
@@ -178,11 +180,14 @@ class MeshUpdater:
         return state.tick == failed.tick or self._placed(reference, pose)[1] >= NEARLY_TANGLED
 
     def is_worn(self, state: State, pose: Pose) -> bool:
-        """Tell whether the mesh is old, a gap has changed since it was made, or a step to ``pose`` spoils a cell."""
+        """Tell whether the mesh is old or periods away, a gap has changed since it was made, or a step to ``pose``
+        spoils a cell."""
         reference, sizes = state.reference, self._sizes
         if state.tick >= reference.tick + self._renewal.oldest:
             return True
         if _gap_changed(reference.gaps, state.gaps, sizes).any():
+            return True
+        if _is_astray(self.system, reference.mesh, pose):
             return True
         points, worst = self._placed(reference, pose)
         if worst < min(max(self._renewal.quality, NEARLY_TANGLED), 0.5 * reference.quality):
@@ -190,13 +195,15 @@ class MeshUpdater:
         if not is_due(reference.pose, state.pose, pose, sizes):
             return False
         mesh = reference.mesh
-        now = relative_sizes(points, mesh.cells, fluid_domain_at(self.system, pose), sizes)
+        around = fluid_domain_at(self.system, mesh.images_of(pose))
+        now = relative_sizes(points, mesh.cells, around, sizes)
         return has_coarsened(self._sizes_when_made(reference, sizes), now, mesh.ranks)
 
     def _sizes_when_made(self, reference: Reference, sizes: Sizes) -> FloatArray:
         """Relative sizes of the reference's cells, (M,), kept for the next look."""
         if self._made is None or self._made[0] is not reference:
-            mesh, around = reference.mesh, fluid_domain_at(self.system, reference.pose)
+            mesh = reference.mesh
+            around = fluid_domain_at(self.system, mesh.images_of(reference.pose))
             self._made = reference, relative_sizes(mesh.points, mesh.cells, around, sizes)
         return self._made[1]
 
@@ -205,34 +212,25 @@ class MeshUpdater:
         the latest pose are kept, as a step asks for them several times."""
         if self._latest is None or self._latest[0] is not reference or self._latest[1] is not pose:
             motion, curved = self._map(reference)
-            geometry = motion.move(pose)
+            geometry = motion.move(reference.mesh.images_of(pose))
             self._latest = reference, pose, geometry, worst_quality(reference.mesh, curved, geometry)
         return self._latest[2:]
-
-    def _refuse_to_cross(self, pose: Pose) -> None:
-        """Reject a step in which a body comes to a periodic surface: it would have to be in two places of the mesh, and
-        facets there do not get smaller."""
-        s = self.system
-        for number in chain(*s.domain.periodic):
-            piece, margin = s.domain.pieces[number], self._sizes.size_body
-            radius = s.bounding_radii
-            reaches = piece.shape.signed_distance(pose.position) <= radius + margin
-            if reaches.any():
-                body = int(np.argmax(reaches))
-                raise StepRejected(
-                    f"body {s.surfaces[body]!r}",
-                    f"its centre at {pose.position[body].tolist()}, where it reaches the periodic {piece.name!r}",
-                    f"bodies that stay away from it by {margin:g}, the mesh.size_body, and their bounding radius",
-                    "Lengthen the domain, end the run before, or hold the body.",
-                )
 
     def _map(self, reference: Reference) -> tuple[MeshMotion, CurvedCells]:
         if self._reference is not reference:
             s = self.system
-            around = FluidDomain(s.bodies, reference.pose, s.domain, s.walls)
+            around = FluidDomain(s.bodies, reference.mesh.images_of(reference.pose), s.domain, s.walls)
             motion = MeshMotion(reference.mesh, around, s.backend.extension, s.window)
             self._motion, self._reference = (motion, CurvedCells(reference.mesh)), reference
         return self._motion
+
+
+def _is_astray(system: System, mesh: Mesh, pose: Pose) -> bool:
+    """Tell whether a body's image on a periodic mesh is more than a period away from the domain."""
+    if mesh.periods is None:
+        return False
+    outside = fluid_domain_at(system, mesh.images_of(pose)).periods_outside()
+    return bool((np.abs(outside) > 1).any())
 
 
 def _refuse_to_leave(system: System, pose: Pose) -> None:

@@ -12,6 +12,7 @@ from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
+from rigidfluid.core.mesh.generation.periodic import Seams
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.extension import Extension, FactorisedExtension
@@ -31,7 +32,8 @@ class MeshMotion:
 
     Small cells are stiff, large ones take the deformation. On the bodies x is the rigid motion from the reference pose
     (of a ball only its translation); vertices on a flat surface across an axis slide along it, so their normal
-    coordinate is fixed and the natural condition holds along the surface; on other surfaces of the domain x = X.
+    coordinate is fixed and the natural condition holds along the surface; periodic surfaces go with the map, and x - X
+    is that of their images; on other surfaces of the domain x = X.
     The mesh is of ``fluid_domain``, whose pose is the reference pose. ``extension`` makes the solver from the mesh, its
     stiffness matrix and the held vertices of one component. If a ``window`` of the domain is meshed, the mesh's ends go
     with it.
@@ -55,11 +57,12 @@ class MeshMotion:
         self._on_bodies = np.concatenate([*surfaces, np.empty(0, np.int64)])
         self._body = np.repeat(np.arange(len(bodies)), [len(on_body) for on_body in surfaces])
         self._held = held_components(mesh, len(bodies), domain)
+        images, _ = Seams.from_domain(len(bodies), domain).originals(mesh)
         self._window = window
         ends = [] if window is None else [surface_vertices(mesh, len(bodies) + piece) for piece in window.ends]
         self._on_ends = np.concatenate([*ends, np.empty(0, np.int64)])
         matrix = stiffness(mesh)
-        self._solves = [extension(mesh, matrix, held) for held in self._held.T]
+        self._solves = [tied(extension, mesh, matrix, held, images) for held in self._held.T]
 
     def move(self, pose: Pose) -> FloatArray:
         """Geometry (N + K, d) of the mesh when the bodies are at ``pose``: vertices and middles of curved edges, those
@@ -93,15 +96,44 @@ class MeshMotion:
         return np.asarray(moved)
 
 
+class TiedExtension:
+    """Extension in which vertices have the values of the ``originals`` (N,) that they are images of.
+
+    ``make`` makes the extension of the values of the originals. If no value is held, the first is."""
+
+    def __init__(
+        self, make: MakeExtension, mesh: Mesh, matrix: csc_array, held: BoolArray, originals: IntArray
+    ) -> None:
+        self._rows, self._place = np.unique(originals, return_inverse=True)
+        each = np.arange(len(originals))
+        sums = csc_array((np.ones(len(each)), (each, self._place)), shape=(len(each), len(self._rows)))
+        kept = np.zeros(len(self._rows), dtype=bool)
+        kept[self._place[held]] = True
+        kept[0] |= not kept.any()
+        self._extension = make(mesh, csc_array(sums.T @ matrix @ sums), kept)
+
+    def fill(self, values: FloatArray) -> None:
+        of_originals = values[self._rows]
+        self._extension.fill(of_originals)
+        values[:] = of_originals[self._place]
+
+
+def tied(make: MakeExtension, mesh: Mesh, matrix: csc_array, held: BoolArray, originals: IntArray) -> Extension:
+    """Extension of values at a mesh's vertices, by what ``make`` makes where none is an image of another."""
+    if np.array_equal(originals, np.arange(len(originals))):
+        return make(mesh, matrix, held)
+    return TiedExtension(make, mesh, matrix, held, originals)
+
+
 def held_components(mesh: Mesh, bodies: int, domain: Domain) -> BoolArray:
     """Tell whether each component of the displacement is prescribed, (N, d): the normal one on a flat surface of the
-    domain that lies across an axis and is not periodic, all on other surfaces and on bodies."""
+    domain that lies across an axis, none on periodic ones, all on other surfaces and on bodies."""
     planes = [None] * bodies + [piece.shape.plane for piece in domain.pieces]
     held = np.zeros(mesh.points.shape, dtype=bool)
     for surface, plane in enumerate(planes):
-        resting = surface - bodies in chain(*domain.periodic)
-        components = slice(None) if plane is None or plane.axis is None or resting else plane.axis
-        held[surface_vertices(mesh, surface), components] = True
+        if surface - bodies not in chain(*domain.periodic):
+            components = slice(None) if plane is None or plane.axis is None else plane.axis
+            held[surface_vertices(mesh, surface), components] = True
     return held
 
 

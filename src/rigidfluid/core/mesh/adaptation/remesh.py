@@ -9,8 +9,9 @@ from itertools import product
 
 import numpy as np
 
-from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.geometry.mesher_unit import mesher_unit, significant
+from rigidfluid.core.mesh.adaptation.chosen_cut import crosses_bodies, cut_around, is_badly_cut
 from rigidfluid.core.mesh.adaptation.kept_cells import kept_cells
 from rigidfluid.core.mesh.adaptation.level_set import level_set_mesh
 from rigidfluid.core.mesh.adaptation.mmg import Kept, run_mmg, with_kept_facets
@@ -23,7 +24,7 @@ from rigidfluid.core.mesh.generation.refine_surface import LONGEST, long_edges, 
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes, edge_lengths
 from rigidfluid.core.mesh.size.size_field import Sizes, wanted_size
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, check_volume, distinct_edges, orient
-from rigidfluid.core.model.types import Mesh
+from rigidfluid.core.model.types import Mesh, Periods
 from rigidfluid.errors import MeshError
 
 GRADATIONS = (1.3, 1.4, 1.2)
@@ -53,6 +54,10 @@ LONGEST_EDGE = 2.5
 """A re-made mesh with an edge longer than this many times the wanted size is refused: MMG has done nothing."""
 
 
+NEAR = 4.0
+"""Bodies with a gap of at most so many of the cells on them have no seam between them, if that can be."""
+
+
 def initial_mesh(
     fluid_domain: FluidDomain,
     sizes: Sizes,
@@ -63,8 +68,33 @@ def initial_mesh(
     Markers are surface numbers, as in :func:`~rigidfluid.core.mesh.generation.meshing.generate_mesh`. Raises MeshError
     where no valid mesh can be made.
     """
-    inserted = inserted_mesh(fluid_domain, sizes, inserter)
-    return remesh(inserted, fluid_domain, sizes)
+    if not fluid_domain.domain.periodic:
+        return remesh(inserted_mesh(fluid_domain, sizes, inserter), fluid_domain, sizes)
+    winding = fluid_domain.periods_outside()
+    position = fluid_domain.pose.position - winding @ fluid_domain.domain.lattice
+    inside = replace(fluid_domain, pose=replace(fluid_domain.pose, position=position))
+    inserted = well_cut(inserted_mesh(inside, sizes, inserter), inside, sizes, winding)
+    return remesh(inserted, fluid_domain.placed_on(inserted), sizes)
+
+
+def well_cut(mesh: Mesh, fluid_domain: FluidDomain, sizes: Sizes, winding: IntArray) -> Mesh:
+    """The periodic mesh, cut open elsewhere if it is badly cut and can be.
+
+    The bodies are so many periods ahead of the poses of ``fluid_domain``, ``winding`` (n, k). Raises MeshError where
+    the seam crosses bodies and there is no better one.
+    """
+    kept = replace(mesh, periods=Periods(fluid_domain.domain.lattice, winding))
+    if not is_badly_cut(mesh, fluid_domain, sizes):
+        return kept
+    failures = []
+    for reach in (NEAR * sizes.size_body, 0.0):
+        try:
+            return cut_around(mesh, fluid_domain, winding, reach)
+        except MeshError as error:
+            failures.append(error)
+    if crosses_bodies(mesh, len(fluid_domain.bodies), fluid_domain.domain):
+        raise failures[0]
+    return kept
 
 
 def inserted_mesh(fluid_domain: FluidDomain, sizes: Sizes, inserter: Inserter) -> Mesh:
@@ -114,7 +144,7 @@ def remesh(
     if excess > LONGEST_EDGE:
         found = f"an edge {excess:.3g} times longer than wanted after re-meshing"
         raise MeshError("mesh", found, f"at most {LONGEST_EDGE:g} times", REMEDY)
-    return new
+    return replace(new, periods=mesh.periods)
 
 
 def best_remeshed(

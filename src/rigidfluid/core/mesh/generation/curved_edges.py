@@ -14,6 +14,7 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import BoolArray, IntArray
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation.curved_cells import CurvedCells
+from rigidfluid.core.mesh.generation.periodic import on_periodic_surfaces
 from rigidfluid.core.mesh.generation.refine_surface import edge_numbers, edges_of_facets, on_kept_surfaces
 from rigidfluid.core.mesh.generation.smooth_fluid import smooth_fluid
 from rigidfluid.core.mesh.mesh_quality import cell_quality
@@ -42,7 +43,8 @@ def with_curved_edges(mesh: Mesh, fluid_domain: FluidDomain) -> Mesh:
     In 3D, vertices in the fluid give way where bent edges come near. Edges in which surfaces meet stay straight, and
     those of cells too thin to bend.
     """
-    edges, surface = edges_of_facets(mesh, on_kept_surfaces(mesh, fluid_domain))
+    seam = on_periodic_surfaces(mesh, len(fluid_domain.bodies), fluid_domain.domain)
+    edges, surface = edges_of_facets(mesh, on_kept_surfaces(mesh, fluid_domain) & ~seam)
     apart = ~_on_others(mesh, edges, surface)
     edges, surface = edges[apart], surface[apart]
     straight = mesh.points[edges].mean(axis=1)

@@ -14,10 +14,9 @@ from rigidfluid.core.geometry.mesher_unit import in_unit, mesher_unit
 from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation.on_surfaces import put_on_surfaces
-from rigidfluid.core.mesh.generation.periodic import identify, with_exact_images
+from rigidfluid.core.mesh.generation.periodic import identify, on_periodic_surfaces, with_exact_images
 from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, orient
-from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.errors import MeshError, PluginError
@@ -112,13 +111,15 @@ def refuse_bodies_outside(pose: Pose, domain: Domain) -> None:
 
 
 def refuse_touching_bodies(mesh: Mesh, fluid_domain: FluidDomain) -> None:
-    """Raise MeshError for the first body without facets of its own, or with a vertex on another surface."""
+    """Raise MeshError for the first body without facets of its own, or with a vertex on another surface that is not
+    periodic."""
     count, domain = len(fluid_domain.bodies), fluid_domain.domain
     names = [f"body.{i}" for i in range(count)] + [repr(piece.name) for piece in domain.pieces]
     least = _TOUCHING * mesher_unit(domain.size)
+    mesh = replace(mesh, markers=np.where(on_periodic_surfaces(mesh, count, domain), -1, mesh.markers))
     for i in range(count):
         mine = mesh.facets[mesh.markers == i]
-        others = mesh.markers[np.isin(mesh.facets, mine).any(axis=1) & (mesh.markers != i)]
+        others = mesh.markers[np.isin(mesh.facets, mine).any(axis=1) & (mesh.markers != i) & (mesh.markers >= 0)]
         if len(others) or not len(mine):
             found = f"contact with {names[others[0]]}" if len(others) else "no surface of its own"
             allowed = f"a gap of more than {least:.2g} to all other surfaces, below which the mesher sees none"
@@ -172,9 +173,11 @@ def _netgen_failed(error: Exception) -> MeshError:
 
 
 def put_back(mesh: Mesh, bodies: int, domain: Domain, curved: bool) -> Mesh:
-    """The mesh with the vertices on flat, or on all, surfaces of the domain exactly there; on all at once where several
-    meet."""
-    chosen = [k for k, piece in enumerate(domain.pieces) if curved or piece.shape.plane is not None]
+    """The mesh with the vertices on flat surfaces of the domain that are not periodic, or on all, exactly there; on all
+    at once where several meet."""
+    periodic = [number for pair in domain.periodic for number in pair]
+    flat = [k for k, piece in enumerate(domain.pieces) if piece.shape.plane is not None and k not in periodic]
+    chosen = list(range(len(domain.pieces))) if curved else flat
     belongs = np.zeros((len(mesh.points), len(chosen)), dtype=bool)
     for column, number in enumerate(chosen):
         belongs[surface_vertices(mesh, bodies + number), column] = True
@@ -198,25 +201,40 @@ def fluid_shape(fluid_domain: FluidDomain, size_body: FloatArray, unit: float) -
 
     bodies, pose, domain = fluid_domain.bodies, fluid_domain.pose, fluid_domain.domain
     shape, placed = numbered_shape(domain, len(bodies), unit), []
-    centre, longest = in_unit(pose.position, unit), in_unit(size_body, unit).tolist()
-    for i, body in enumerate(bodies):
-        placed.append(turned(body.cad_shape(unit), pose.orientation[i]).Move(occ.Vec(*in_space(centre[i]))))
-        for side in sides(placed[i], domain.dimension):
+    numbers, centres = images_in_box(fluid_domain)
+    longest = in_unit(size_body, unit).tolist()
+    for i, centre in zip(numbers.tolist(), in_unit(centres, unit), strict=True):
+        placed.append(turned(bodies[i].cad_shape(unit), pose.orientation[i]).Move(occ.Vec(*in_space(centre))))
+        for side in sides(placed[-1], domain.dimension):
             side.name, side.maxh = str(i), longest[i]
-    for group in groups_apart(bodies, pose):  # one by one costs the square of their number
+    radius = np.array([bodies[i].bounding_radius for i in numbers])
+    for group in groups_apart(radius, centres):  # one by one costs the square of their number
         shape = shape - (placed[group[0]] if len(group) == 1 else occ.Compound([placed[i] for i in group]))
     identify(sides(shape, domain.dimension), len(bodies), domain, unit)
     return shape
 
 
-def groups_apart(bodies: Sequence[Body], pose: Pose) -> list[list[int]]:
-    """The numbers of all bodies in groups of such whose bounding balls do not meet: OpenCASCADE takes none that overlap
-    in one compound."""
-    radius = np.array([body.bounding_radius for body in bodies])
+def images_in_box(fluid_domain: FluidDomain) -> tuple[IntArray, FloatArray]:
+    """All bodies, and the images of them that reach into the box around the domain: the body's number (c,) and the
+    centre (c, d) of each [length]."""
+    (lower, upper), position = fluid_domain.domain.extent, fluid_domain.pose.position
+    radius = np.array([body.bounding_radius for body in fluid_domain.bodies])[:, None]
+    numbers, centres = [np.arange(len(position))], [position]
+    for way in fluid_domain.images[1:]:
+        moved = position + way
+        reaches = np.flatnonzero(np.all((moved + radius > lower) & (moved - radius < upper), axis=1))
+        numbers.append(reaches)
+        centres.append(moved[reaches])
+    return np.concatenate(numbers), np.concatenate(centres)
+
+
+def groups_apart(radius: FloatArray, centres: FloatArray) -> list[list[int]]:
+    """The numbers of all balls (N,) in groups of such that do not meet: OpenCASCADE takes no bodies that overlap in one
+    compound."""
     groups: list[list[int]] = []
-    for i in range(len(bodies)):
+    for i in range(len(centres)):
         for group in groups:
-            distance = np.linalg.norm(pose.position[group] - pose.position[i], axis=1)
+            distance = np.linalg.norm(centres[group] - centres[i], axis=1)
             if (distance > radius[group] + radius[i]).all():
                 group.append(i)
                 break
