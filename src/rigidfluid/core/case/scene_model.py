@@ -100,8 +100,7 @@ def _model(scene: Scene, registry: Registry) -> Model:
             else ask(_compose, scene, registry, _Parts(domain, bodies, mechanisms, fluid, laws, pair_forces, joints))
         )
         if ask.errors and domain is not None:
-            in_fluid = fluid is None or fluid.backend.part.wet
-            ask(check_made_bodies, domain, bodies, mechanisms or (), registry, in_fluid)
+            ask(check_made_bodies, domain, bodies, mechanisms or (), registry)
     assert model is not None
     return model
 

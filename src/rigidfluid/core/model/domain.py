@@ -105,10 +105,10 @@ class Domain(SpatialPart):
         forward = np.where(vectors.sum(axis=1) < 0.0, -1.0, 1.0)
         return Lattice(forward[:, None] * vectors, self.extent[0])
 
-    def crossed(self, wet: bool) -> Lattice:
-        """The lattice by which bodies cross periodic surfaces: without vectors if there are none, or if it is ``wet``
-        around the bodies, as they do not leave a mesh."""
-        return Lattice(self.cells.vectors[:0], self.extent[0]) if wet else self.cells
+    @property
+    def alone(self) -> Lattice:
+        """The lattice without vectors: bodies stay in the domain."""
+        return Lattice(self.cells.vectors[:0], self.extent[0])
 
     def called(self, names: Collection[str]) -> Self:
         """The same domain, each of its pieces under its other name where that is among the ``names``."""

@@ -49,6 +49,7 @@ class System:
     ``detection_type(system)``: by which the loop asks the ``detector``; ``detector_why``: who chose that, and for what
     reason. ``reach``: the largest gap that is measured [length].
     ``stresslets``: those of the bodies are wanted of the backend.
+    ``lattice``: by which bodies cross periodic surfaces and meet images of each other; no vectors where they do not.
     ``rotational_factor`` (n,): of each body's surface, see `largest_rotational_factor` [1].
     """
 
@@ -83,6 +84,7 @@ class System:
     loads: Loads
     substeps: int | None
     implicit: bool
+    lattice: Lattice
     window: Window | None = None
     joined: IntArray = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
     stresslets: bool = False
@@ -96,11 +98,6 @@ class System:
     def has_fluid(self) -> bool:
         """Tell whether there is a fluid around the bodies."""
         return self.fluid is not None
-
-    @cached_property
-    def lattice(self) -> Lattice:
-        """The lattice by which bodies meet images of each other: none in a fluid, where no body may reach a seam."""
-        return self.domain.crossed(self.backend_type.wet)
 
     @property
     def law_range(self) -> float:

@@ -95,6 +95,7 @@ def assemble(model: Model, check: Callable[[Model, Pose], None] = check_geometry
         loads=loads,
         substeps=model.stepping.substeps,
         implicit=model.stepping.implicit,
+        lattice=model.crossed,
         window=window,
         joined=joined_bodies(model),
         stresslets=model.output.stresslets,

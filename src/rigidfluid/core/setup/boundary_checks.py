@@ -113,6 +113,9 @@ def check_periodic(model: Model) -> None:
         raise SceneError(at, found, "'wall' there", "Make it a wall, or do without periodic surfaces.")
     if not model.wet:
         check_crossed(model, at)
+    elif model.mechanisms:
+        found = "'periodic' together with mechanisms in a fluid, whose parts may be in different images"
+        raise SceneError(at, found, "one of both", "Make the surfaces walls, or the parts bodies of their own.")
 
 
 def _check_pairs(model: Model) -> None:

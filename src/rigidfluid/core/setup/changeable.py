@@ -17,6 +17,7 @@ def require_changeable(model: Model) -> None:
         "joint": model.joints,
         "body.spring or body.free": [body for body in model.bodies if body.linked_to_ground],
         "domain.window": model.window,
+        "boundary.type = 'periodic' in a fluid": model.wet and model.domain.periodic,
     }
     for key, value in found.items():
         if value:

@@ -21,11 +21,22 @@ _ALONG = 1e-12
 """Greatest cosine of an angle that counts as a right one."""
 
 
+def crossed_lattice(model: Model) -> Lattice:
+    """The lattice by which bodies of a model cross its periodic surfaces; without vectors in a fluid where something is
+    not the same in each image, as obstacles: there they may stay in the domain."""
+    if model.wet and model.domain.periodic:
+        try:
+            check_crossed(model, "boundary")
+        except SceneError:
+            return model.domain.alone
+    return model.domain.cells
+
+
 def check_crossed(model: Model, at: str) -> None:
     """Refuse, with SceneError at the field ``at``, periodic surfaces that bodies cross and that are not at right angles
     to each other, walls that are not the same in each image of the domain, and forces between two bodies at any
     distance."""
-    lattice = model.crossed
+    lattice = model.domain.cells
     units = lattice.vectors / lattice.lengths[:, None]
     if np.any(np.abs(units @ units.T - np.eye(len(units))) > _ALONG):
         found = "bodies that cross periodic surfaces at other angles than right ones"

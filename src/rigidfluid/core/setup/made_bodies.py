@@ -22,7 +22,6 @@ def check_made_bodies(
     bodies: Sequence[RigidBody | None],
     mechanisms: Sequence[PlacedMechanism],
     registry: Registry,
-    in_fluid: bool = True,
 ) -> None:
     """Refuse, with SceneError, names that bodies and surfaces share and bodies that overlap or are outside the domain;
     None stands for bodies that could not be made."""
@@ -31,7 +30,7 @@ def check_made_bodies(
             None if body is None else ask(_valid, body, domain.dimension, f"body.{n}") for n, body in enumerate(bodies)
         ]
         numbers = [n for n, body in enumerate(valid) if body is not None]
-        made = PlacedBodies(domain, tuple(filter(None, valid)), tuple(_distinct(mechanisms)), registry, in_fluid)
+        made = PlacedBodies(domain, tuple(filter(None, valid)), tuple(_distinct(mechanisms)), registry)
         if made.all_bodies:
             ask(_check_made, made, numbers)
 

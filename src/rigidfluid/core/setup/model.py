@@ -14,6 +14,7 @@ from pydantic import Field
 from rigidfluid.core.contact.path.detector_choice import choose_detector
 from rigidfluid.core.fluid.conditions import BoundaryCondition, NoSlip
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.geometry.lattice import Lattice
 from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.domain import Domain
@@ -30,6 +31,7 @@ from rigidfluid.core.setup.checked import AnyRow, NotNegative, Vector, checked
 from rigidfluid.core.setup.contact_laws import ContactLaw, told_apart
 from rigidfluid.core.setup.description import describe
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
+from rigidfluid.core.setup.image_checks import crossed_lattice
 from rigidfluid.core.setup.model_checks import check_model
 from rigidfluid.core.setup.pair_forces import PairForce
 from rigidfluid.core.setup.placed_bodies import Arrangement
@@ -200,6 +202,11 @@ class Model(Arrangement, Described):
     def wet(self) -> bool:
         """Tell whether there is a fluid around the bodies, on a mesh."""
         return self.fluid.backend.part.wet
+
+    @cached_property
+    def crossed(self) -> Lattice:
+        """The lattice by which bodies cross periodic surfaces, without vectors where they do not."""
+        return crossed_lattice(self)
 
     @cached_property
     def named_laws(self) -> tuple[ContactLaw, ...]:

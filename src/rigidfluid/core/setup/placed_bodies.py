@@ -29,14 +29,9 @@ class Arrangement:
     registry: Registry
 
     @property
-    def wet(self) -> bool:
-        """Tell whether there is a fluid around the bodies, on a mesh, as there is if nothing else is known."""
-        return True
-
-    @property
     def crossed(self) -> Lattice:
         """The lattice by which bodies cross periodic surfaces, without vectors where they do not."""
-        return self.domain.crossed(self.wet)
+        return self.domain.cells
 
     @property
     def dimension(self) -> int:
@@ -66,18 +61,12 @@ class Arrangement:
 
 @dataclass(frozen=True)
 class PlacedBodies(Arrangement):
-    """Bodies and mechanisms in a domain, ``in_fluid`` or not, with the parts that are installed."""
+    """Bodies and mechanisms in a domain, with the parts that are installed."""
 
     domain: Domain
     bodies: tuple[RigidBody, ...]
     mechanisms: tuple[PlacedMechanism, ...]
     registry: Registry
-    in_fluid: bool = True
-
-    @property
-    def wet(self) -> bool:
-        """Tell whether they are in a fluid."""
-        return self.in_fluid
 
 
 def check_names(placed: Arrangement) -> None:

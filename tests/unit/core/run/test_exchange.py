@@ -163,7 +163,7 @@ def test_bodies_that_cannot_enter_change_nothing(body: Any, message: str) -> Non
 
 def test_a_body_on_a_spring_does_not_enter() -> None:
     run = dry()
-    with pytest.raises(SceneError, match="body.spring"):
+    with pytest.raises(SceneError, match=r"body\.spring"):
         run.add(THIRD | {"spring": {"stiffness": 1.0}})
     assert list(run.bodies) == ["first", "second"]
 
