@@ -32,14 +32,18 @@ class ContactNetwork(NamedTuple):
 def contact_network(samples: Samples, table: Mapping[str, NDArray[Any]]) -> ContactNetwork:
     """Contacts within the range of the laws, by the ``table`` of contacts.
 
-    The stress is σ = -Σ F (x_a - x_b)ᵀ/V, with the force F on a and the centres x: negative under pressure.
+    The stress is σ = -Σ F (x_a - x_b)ᵀ/V, with the force F on a and the centres x, of b that of the image at the
+    contact: negative under pressure.
     """
     places = {name: place for place, name in enumerate(samples.name)}
     states = np.searchsorted(samples.step, table["step"])
     known = states < len(samples.step)
     known[known] = samples.step[states[known]] == table["step"][known]
     axes = "xyz"[: samples.dimension]
-    force = np.stack([table[f"f{axis}"][known] for axis in axes], axis=1).reshape(-1, samples.dimension)
+    force, point_b = (
+        np.stack([table[f"{kind}{axis}"][known] for axis in axes], axis=1).reshape(-1, samples.dimension)
+        for kind in "fb"
+    )
     state = states[known]
     a, b = (np.array([places.get(name, -1) for name in table[side][known]], dtype=int) for side in "ab")
     by_state = [(a[state == one], b[state == one]) for one in range(len(samples.step))]
@@ -47,7 +51,7 @@ def contact_network(samples: Samples, table: Mapping[str, NDArray[Any]]) -> Cont
     def over_states(figure: Callable[[int, IntArray, IntArray], float]) -> Mean:
         return mean(np.array([figure(samples.count, *one) for one in by_state]))
 
-    stress = _stress(samples, state, a, b, force)
+    stress = _stress(samples, state, (a, b), point_b, force)
     return ContactNetwork(
         coordination=over_states(_coordination),
         touching=over_states(_touching),
@@ -79,11 +83,16 @@ def _pairs(a: IntArray, b: IntArray) -> IntArray:
     return np.unique(np.sort(np.stack([a[both], b[both]], axis=1), axis=1), axis=0)
 
 
-def _stress(samples: Samples, state: IntArray, a: IntArray, b: IntArray, force: FloatArray) -> FloatArray:
-    """Stress of contacts between bodies in each state (s, d, d) [force/length^(d-1)]."""
+def _stress(
+    samples: Samples, state: IntArray, pair: tuple[IntArray, IntArray], point_b: FloatArray, force: FloatArray
+) -> FloatArray:
+    """Stress of contacts between bodies in each state (s, d, d), by their points on b [force/length^(d-1)]."""
+    a, b = pair
     both = (a >= 0) & (b >= 0)
     state, force = state[both], force[both]
-    arm = samples.position[state, a[both]] - samples.position[state, b[both]]
+    centre_b = samples.position[state, b[both]]
+    centre_b = centre_b + samples.periods(point_b[both] - centre_b)
+    arm = samples.position[state, a[both]] - centre_b
     stress = np.zeros((len(samples.step), samples.dimension, samples.dimension))
     np.add.at(stress, state, -force[:, :, None] * arm[:, None, :] / samples.volume)
     return stress

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial.distance import pdist
 
-from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.post.statistics.blocks import Mean, mean
 from rigidfluid.post.statistics.samples import Samples
 
@@ -27,22 +27,36 @@ class PairDistribution(NamedTuple):
 def pair_distribution(samples: Samples) -> PairDistribution:
     """g(r) = pairs at r / those of places that are independent and even in the box that centres may be in.
 
-    The box is the domain less a mean radius at each side, so that walls change nothing for independent places. The
-    greatest distance is half of its least side.
+    The box is the domain less a mean radius at each wall, so that walls change nothing for independent places. The
+    greatest distance is half of its least side. Along periods the distance is that of the nearest images.
     """
-    sides = np.maximum(samples.upper - samples.lower - 2.0 * samples.radius.mean(), 1e-9 * samples.radius.mean())
+    walls = np.where(samples.periodic, 0.0, 2.0 * samples.radius.mean())
+    sides = np.maximum(samples.upper - samples.lower - walls, 1e-9 * samples.radius.mean())
     edges = np.linspace(0.0, max(0.5 * sides.min(), 4.0 * samples.radius.mean()), BINS + 1)
     pairs = 0.5 * samples.count * (samples.count - 1)
-    expected = pairs * shell_shares(edges, sides)
-    counted = np.array([np.histogram(pdist(position), edges)[0] for position in samples.position])
+    expected = pairs * shell_shares(edges, sides, samples.periodic)
+    counted = np.array([np.histogram(_distances(samples, position), edges)[0] for position in samples.position])
     ratio = np.divide(counted, expected, out=np.zeros(counted.shape), where=expected > 0.0)
     return PairDistribution(0.5 * (edges[1:] + edges[:-1]), mean(ratio))
 
 
-def shell_shares(edges: FloatArray, sides: FloatArray) -> FloatArray:
+def _distances(samples: Samples, position: FloatArray) -> FloatArray:
+    """Distances of all pairs of places (n, d), of nearest images along periods, (n(n-1)/2,) [length]."""
+    if not samples.periodic.any():
+        return np.asarray(pdist(position))
+    square = np.zeros(len(position) * (len(position) - 1) // 2)
+    for axis, periodic in enumerate(samples.periodic):
+        apart = pdist(position[:, axis : axis + 1])
+        if periodic:
+            apart -= samples.period[axis] * np.rint(apart / samples.period[axis])
+        square += apart**2
+    return np.sqrt(square)
+
+
+def shell_shares(edges: FloatArray, sides: FloatArray, periodic: BoolArray) -> FloatArray:
     """Probability (b,) that two independent places in a box with these ``sides`` (d,) are between two ``edges`` apart.
 
-    The difference u of two places has the density ∏ (L - |u|)/L².
+    The difference u of two places has the density ∏ (L - |u|)/L², that of nearest images along a period 1/L.
     """
     nodes, weights = np.polynomial.legendre.leggauss(_ANGLES)
     angle, part = 0.25 * np.pi * (nodes + 1.0), 0.25 * np.pi * weights
@@ -58,7 +72,8 @@ def shell_shares(edges: FloatArray, sides: FloatArray) -> FloatArray:
     few, portions = np.polynomial.legendre.leggauss(_RADII)
     radius = place[:, None] + half[:, None] * few
     density = np.ones((*radius.shape, directions.shape[1]))
-    for side, direction in zip(sides, directions, strict=True):
-        density *= np.maximum(side - radius[..., None] * direction, 0.0) / side**2
+    for side, direction, wraps in zip(sides, directions, periodic, strict=True):
+        apart = radius[..., None] * direction
+        density *= np.where(apart <= 0.5 * side, 1.0, 0.0) / side if wraps else np.maximum(side - apart, 0.0) / side**2
     shells = (density @ parts) * radius ** (len(sides) - 1)
     return np.asarray(half * (shells @ portions))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -26,9 +27,7 @@ class Profile(NamedTuple):
 def profile(samples: Samples, axis: int) -> Profile:
     """Profile across ``axis``, with bodies as balls of their volume, cut by the layers."""
     edges = np.linspace(samples.lower[axis], samples.upper[axis], LAYERS + 1)
-    heights = (edges[:, None] - samples.position[:, None, :, axis]) / samples.radius
-    below = _share_below(np.clip(heights, -1.0, 1.0), samples.dimension) * samples.body_volume
-    inside = np.diff(below, axis=1)
+    inside = np.sum([_inside(samples, edges, place) for place in _places(samples, axis)], axis=0)
     layer = samples.volume / LAYERS
     moved = np.einsum("sln,snd->sld", inside, samples.velocity)
     solid = inside.sum(axis=2)
@@ -38,6 +37,23 @@ def profile(samples: Samples, axis: int) -> Profile:
         mean(moved - velocity * solid[..., None]).error, share, out=np.full_like(velocity, np.nan), where=share > 0.0
     )
     return Profile(axis, 0.5 * (edges[1:] + edges[:-1]), mean(solid / layer), Mean(velocity, off))
+
+
+def _places(samples: Samples, axis: int) -> Sequence[FloatArray]:
+    """Coordinates (s, n) of the bodies along an axis, and along a period those of the images next to them [length]."""
+    place = samples.position[..., axis]
+    if not samples.periodic[axis]:
+        return [place]
+    length = samples.period[axis]
+    first = samples.lower[axis] + np.mod(place - samples.lower[axis], length)
+    return [first - length, first, first + length]
+
+
+def _inside(samples: Samples, edges: FloatArray, place: FloatArray) -> FloatArray:
+    """Volume of each body between the edges (s, l, n) [length^d]."""
+    heights = (edges[:, None] - place[:, None, :]) / samples.radius
+    below = _share_below(np.clip(heights, -1.0, 1.0), samples.dimension) * samples.body_volume
+    return np.diff(below, axis=1)
 
 
 def _share_below(height: FloatArray, dimension: int) -> FloatArray:

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
+from rigidfluid.core.model.system import System
 from rigidfluid.errors import OutputError
 from rigidfluid.post.reports.results import Results
 
@@ -25,7 +26,7 @@ class Samples:
     ``step`` (s,) numbers of the states; ``time`` (s,) [time]; ``position`` and ``velocity`` (s, n, d) [length,
     length/time]; ``gap`` (s, n), of each body to its nearest surface [length]; ``radius`` (n,) of balls of the same
     volume [length]; ``name`` of each body; ``lower`` and ``upper`` (d,), corners of the domain [length]; ``volume`` of
-    the domain with bodies [length^d].
+    the domain with bodies [length^d]; ``period`` (d,) along each axis, infinite between walls [length].
     """
 
     step: FloatArray
@@ -38,6 +39,17 @@ class Samples:
     lower: FloatArray
     upper: FloatArray
     volume: float
+    period: FloatArray
+
+    @property
+    def periodic(self) -> BoolArray:
+        """Tell whether the domain is periodic along each axis (d,)."""
+        return np.isfinite(self.period)
+
+    def periods(self, differences: FloatArray) -> FloatArray:
+        """Whole periods nearest to ``differences`` (…, d), (…, d) [length]."""
+        length = np.where(self.periodic, self.period, 1.0)
+        return np.asarray(np.where(self.periodic, length * np.rint(differences / length), 0.0))
 
     @property
     def count(self) -> int:
@@ -110,4 +122,16 @@ def samples_of(results: Results, since: float | None, until: float | None) -> Sa
         lower=np.asarray(lower),
         upper=np.asarray(upper),
         volume=float(system.domain.volume),
+        period=_periods(system),
     )
+
+
+def _periods(system: System) -> FloatArray:
+    """Periods along the axes (d,), infinite without one [length]; raises OutputError for oblique ones."""
+    found, vectors = np.full(system.dimension, np.inf), system.domain.lattice
+    axis = np.argmax(np.abs(vectors), axis=1)
+    found[axis] = np.abs(vectors)[np.arange(len(vectors)), axis]
+    if np.count_nonzero(np.abs(vectors) > 1e-9 * np.abs(vectors).max(initial=0.0)) > len(vectors):
+        remedy = "Place the domain along the axes."
+        raise OutputError("statistics", "periodic surfaces across no axis", "such across an axis", remedy)
+    return found

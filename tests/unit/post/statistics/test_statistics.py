@@ -22,7 +22,9 @@ from rigidfluid.post.statistics.samples import Samples
 from rigidfluid.post.statistics.structure_factor import structure_factor
 
 
-def made(position: np.ndarray, velocity: np.ndarray | None = None, radius: float = 0.01) -> Samples:
+def made(
+    position: np.ndarray, velocity: np.ndarray | None = None, radius: float = 0.01, period: float = np.inf
+) -> Samples:
     """Balls in a unit box at places (s, n, d), a time of .1 from state to state."""
     states, count, dimension = position.shape
     return Samples(
@@ -36,6 +38,7 @@ def made(position: np.ndarray, velocity: np.ndarray | None = None, radius: float
         lower=np.zeros(dimension),
         upper=np.ones(dimension),
         volume=1.0,
+        period=np.array([period, *[np.inf] * (dimension - 1)]),
     )
 
 
@@ -58,7 +61,46 @@ def test_shells_of_the_box_are_those_of_random_places(dimension: int) -> None:
     edges = np.linspace(0.0, 0.35, 8)
     apart = np.linalg.norm(np.diff(random.random((400_000, 2, dimension)) * sides, axis=1)[:, 0], axis=1)
     counted = np.histogram(apart, edges)[0] / len(apart)
-    np.testing.assert_allclose(shell_shares(edges, sides), counted, rtol=0.1, atol=3e-4)
+    np.testing.assert_allclose(
+        shell_shares(edges, sides, np.zeros(dimension, dtype=bool)), counted, rtol=0.1, atol=3e-4
+    )
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_independent_places_have_no_structure_along_a_period_either(dimension: int) -> None:
+    random = np.random.default_rng(7)
+    place = 0.01 + 0.98 * random.random((200, 60, dimension))
+    place[..., 0] = random.random((200, 60)) + random.integers(-3, 4, (200, 60))
+    pairs = pair_distribution(made(place, period=1.0))
+    many = pairs.distance > 0.2
+    np.testing.assert_allclose(pairs.value.value[many], 1.0, atol=0.1)
+    assert np.mean(np.abs(pairs.value.value[many] - 1.0) < 2.0 * pairs.value.error[many]) > 0.85
+
+
+def test_statistics_do_not_depend_on_the_period_in_which_a_body_is() -> None:
+    random = np.random.default_rng(3)
+    place = np.array([[[0.02, 0.5], [0.97, 0.5], [0.5, 0.2]]]) + 1e-3 * random.random((16, 1, 2))
+    there = place + np.array([[1.0, 0.0], [-2.0, 0.0], [3.0, 0.0]])
+    middle = place + np.array([0.4, 0.0])
+    middle[..., 0] = np.mod(middle[..., 0], 1.0)
+    table = {
+        "step": np.arange(16.0),
+        "a": np.array(["ball0"] * 16),
+        "b": np.array(["ball1"] * 16),
+        "fx": np.full(16, 3.0),
+        "fy": np.zeros(16),
+    }
+    found = []
+    for position, shift in ((place, -1.0), (there, 2.0), (middle, 0.0)):
+        samples = made(position, velocity=np.ones_like(position), radius=0.03, period=1.0)
+        on_b = position[:, 1] + [shift + 0.03, 0.0]
+        network = contact_network(samples, table | {"bx": on_b[:, 0], "by": on_b[:, 1]})
+        found.append((pair_distribution(samples).value.value, network.stress.value, profile(samples, 1).fraction.value))
+        assert profile(samples, 0).fraction.value.sum() / 20.0 == pytest.approx(3.0 * np.pi * 0.03**2)
+    np.testing.assert_allclose(found[0][1], [[-3.0 * 0.05, 0.0], [0.0, 0.0]], atol=1e-12)
+    for other in found[1:]:
+        for one, same in zip(found[0], other, strict=True):
+            np.testing.assert_allclose(one, same, rtol=0, atol=1e-9)
 
 
 def test_a_lattice_scatters_waves_of_its_spacing_alone() -> None:
@@ -116,7 +158,7 @@ def test_contacts_make_groups_and_press() -> None:
     rows = [("ball0", "ball1", -4.0, 0.0), ("ball1", "ball2", -4.0, 0.0), ("ball0", "left", 4.0, 0.0)]
     a, b, fx, fy = (np.array([row[column] for row in rows] * 8) for column in range(4))
     step = np.repeat(np.arange(8), 3)
-    found = contact_network(samples, {"step": step, "a": a, "b": b, "fx": fx, "fy": fy})
+    found = contact_network(samples, {"step": step, "a": a, "b": b, "fx": fx, "fy": fy, "bx": 0.0 * fx, "by": 0.0 * fy})
     assert found.coordination.value == pytest.approx(4 / 4)
     assert found.touching.value == pytest.approx(3 / 4)
     assert found.largest.value == pytest.approx(3 / 4)
