@@ -9,7 +9,7 @@ from matplotlib.colors import to_rgb
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.output.vtu import read_vtu
-from rigidfluid.post.reports.bodies import PlacedBody, placed_bodies
+from rigidfluid.post.reports.bodies import PlacedBody, seen_bodies
 from rigidfluid.post.reports.raster import Grid
 from rigidfluid.post.reports.results import Results
 from rigidfluid.post.reports.scale import Quantity, Scale
@@ -49,7 +49,7 @@ def ground(results: Results, grid: Grid) -> FloatArray:
 
 def draw_bodies(picture: FloatArray, grid: Grid, results: Results, state: int) -> None:
     """Paint the bodies, as the plane cuts them, into a picture (rows, columns, 3)."""
-    for body in placed_bodies(results, state):
+    for body in seen_bodies(results, state):
         _draw(picture, grid, body)
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 from contourpy import contour_generator
@@ -17,7 +18,7 @@ _GRID = 80
 """Points to each side of the grid about a body in which its outline is found."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PlacedBody:
     """Body of a run by its ``number``: ``shape``, ``centre`` (d,), and ``turn`` (d, d) from its frame to space."""
 
@@ -36,9 +37,22 @@ def placed_bodies(results: Results, state: int) -> list[PlacedBody]:
     return [PlacedBody(int(i), bodies[i], *place) for i, *place in zip(there, centres, turns, strict=True)]
 
 
+def seen_bodies(results: Results, state: int) -> list[PlacedBody]:
+    """The bodies that are there at a state and, along periods, their images in the domain and around it."""
+    bodies, lattice = placed_bodies(results, state), results.system.domain.cells
+    if not len(lattice.vectors):
+        return bodies
+    around = lattice.displacement(np.array(list(product((-1, 0, 1), repeat=len(lattice.vectors)))))
+    return [
+        replace(body, centre=lattice.wrapped(body.centre[None])[0] + displacement)
+        for body in bodies
+        for displacement in around
+    ]
+
+
 def cuts(results: Results, state: int, plane: ViewPlane, through: FloatArray) -> list[FloatArray]:
     """The curves (K, 2) in which the plane through a point (d,) cuts bodies, to the right and up."""
-    return [curve for body in placed_bodies(results, state) for curve in cut(body, plane, through)]
+    return [curve for body in seen_bodies(results, state) for curve in cut(body, plane, through)]
 
 
 def cut(placed: PlacedBody, plane: ViewPlane, through: FloatArray) -> list[FloatArray]:

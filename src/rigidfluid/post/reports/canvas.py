@@ -11,7 +11,7 @@ from scipy.spatial import ConvexHull
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.model.body import Body
-from rigidfluid.post.reports.bodies import placed_bodies
+from rigidfluid.post.reports.bodies import seen_bodies
 from rigidfluid.post.reports.raster import Grid, Sampling
 from rigidfluid.post.reports.results import Results
 
@@ -82,7 +82,7 @@ class Canvas:
         """Paint the bodies lit from the upper left, each with a ``stripe`` along its x-axis."""
         plane = self.grid.plane
         observer = np.stack([plane.right, plane.up, plane.normal])
-        for body in placed_bodies(results, state):
+        for body in seen_bodies(results, state):
             shell, turn = shells[body.number], body.turn
             own = shell.triangles[..., :2] / body.shape.bounding_radius
             values = np.concatenate([own, shell.normals @ (observer @ turn).T], axis=2)

@@ -8,7 +8,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.surface import Surface
-from rigidfluid.post.reports.bodies import cut, placed_bodies
+from rigidfluid.post.reports.bodies import cut, seen_bodies
 from rigidfluid.post.reports.results import Results
 from rigidfluid.post.reports.view_plane import ViewPlane
 
@@ -39,15 +39,15 @@ def gap_middle(results: Results, state: int, number: int, plane: ViewPlane) -> F
 
     The other surface is that whose distance agrees best with the table's gap, which is none to surfaces without wall.
     """
-    bodies = {body.number: body for body in placed_bodies(results, state)}
-    body = bodies.pop(number, None)
-    if body is None:
+    if not results.present[state, number]:
         return None
-    centre = body.centre
+    bodies, centre = seen_bodies(results, state), results.path(number)[state]
+    body = min((one for one in bodies if one.number == number), key=lambda one: _apart(one.centre, centre))
+    bodies.remove(body)
     curves = [curve[:-1] for curve in cut(body, plane, centre)]  # closed: the last point is the first
     outline = plane.lifted(np.concatenate(curves), centre)
     own = _Placed(body.shape, centre, body.turn)
-    others = [_Placed(other.shape, other.centre, other.turn) for other in bodies.values()]
+    others = [_Placed(other.shape, other.centre, other.turn) for other in bodies]
     still = np.zeros(len(centre)), np.eye(len(centre))
     others += [_Placed(piece.shape, *still) for piece in results.system.domain.pieces]
     gap = float(results.bodies["gap"][state, number])
@@ -56,6 +56,10 @@ def gap_middle(results: Results, state: int, number: int, plane: ViewPlane) -> F
     middle = line.mean(axis=0)
     off = middle - plane.lifted(plane.flat(middle), centre)
     return plane.flat(middle) if np.linalg.norm(off) <= _OFF * gap else None
+
+
+def _apart(one: FloatArray, other: FloatArray) -> float:
+    return float(np.linalg.norm(one - other))
 
 
 def _shortest_line(own: _Placed, other: _Placed, outline: FloatArray) -> FloatArray:

@@ -109,10 +109,11 @@ class Results:
         return np.stack([self.bodies[column] for column in quantity_columns(self.system.dimension)[name]], axis=-1)
 
     def path(self, body: int) -> FloatArray:
-        """Positions of a body by number (s, d): its first before it enters, its last after it has left [length]."""
+        """Positions of a body by number (s, d), along periods those of its image in the domain; its first before it
+        enters, its last after it has left [length]."""
         there = np.flatnonzero(self.present[:, body])
         state = np.clip(np.arange(len(self.time)), there[0], there[-1])
-        return np.asarray(self.quantity("position")[state, body])
+        return self.system.domain.wrapped(self.quantity("position")[state, body])
 
 
 def read_results(folder: Path, *, motion_only: bool = False, model: Model | None = None) -> Results:
