@@ -112,10 +112,19 @@ def check_periodic(model: Model) -> None:
         found = f"'periodic' together with {other.type!r} on {other.name!r}, which does not lie across an axis"
         raise SceneError(at, found, "'wall' there", "Make it a wall, or do without periodic surfaces.")
     if not model.wet:
+        _refuse_dry_drop(model)
         check_crossed(model, at)
     elif model.mechanisms:
         found = "'periodic' together with mechanisms in a fluid, whose parts may be in different images"
         raise SceneError(at, found, "one of both", "Make the surfaces walls, or the parts bodies of their own.")
+
+
+def _refuse_dry_drop(model: Model) -> None:
+    """Refuse a drop of pressure where there is no fluid."""
+    for condition in model.conditions:
+        if isinstance(condition, Periodic) and condition.drop is not no_pressure:
+            found = f"a drop of pressure with backend {model.fluid.backend.part.name!r}"
+            raise SceneError(f"{condition.field}.pressure_drop", found, "one in a fluid", "Leave it out.")
 
 
 def _check_pairs(model: Model) -> None:

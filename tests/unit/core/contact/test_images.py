@@ -330,3 +330,10 @@ def test_prescribed_joined_and_composed_bodies_cross_seams():
     assert np.all(np.linalg.norm(middle.twist.velocity, axis=1) > 0.05)
     np.testing.assert_allclose(across.pose.position - [0.4, 0.0], middle.pose.position, rtol=0, atol=1e-11)
     np.testing.assert_allclose(across.pose.orientation, middle.pose.orientation, rtol=0, atol=1e-10)
+
+
+def test_without_a_fluid_no_pressure_drops() -> None:
+    sides = [{"on": "left", "type": "periodic", "pressure_drop": 1.0}, {"on": "right", "type": "periodic"}]
+    ball = {"type": "sphere", "radius": 0.1, "density": 1.0, "position": [0.5, 0.5]}
+    with pytest.raises(SceneError, match="pressure_drop"):
+        scene_from_dict(dry_tables(ball, boundary=sides))
