@@ -8,8 +8,10 @@ from rigidfluid.core.case.population_due import seeded_body
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.exchange_tables import SinkTable, SourceTable
+from rigidfluid.core.seeding.draws import Draws
 from rigidfluid.core.seeding.placement import Others
 from rigidfluid.core.seeding.regions import region_of
+from rigidfluid.core.seeding.swarm import swarm_of
 from rigidfluid.core.setup.changeable import require_changeable
 from rigidfluid.core.setup.model import Model
 from rigidfluid.errors import SceneError
@@ -44,6 +46,9 @@ def _check_source(table: SourceTable, number: int, model: Model) -> None:
     dimension = model.dimension
     nobody = Others((), Pose(np.zeros((0, dimension)), np.zeros((0, 1 if dimension == 2 else 4))))
     seeded_body(model, number, 0, nobody)
+    if model.names_detector:
+        shapes = swarm_of(table.swarm(0), at, dimension, Draws(model.seed), model.registry).shapes
+        model.detection[0].part(model.detection[0].options, (*model.shapes, *shapes), model.walls)
 
 
 def _check_sink(table: SinkTable, at: str, model: Model) -> None:

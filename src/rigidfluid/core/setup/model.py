@@ -160,8 +160,7 @@ class Model(Arrangement, Described):
     def with_bodies(self, bodies: tuple[RigidBody, ...]) -> Model:
         """The same model with other bodies, told in results and checkpoints as this one; a detector that nobody named
         is chosen for them."""
-        named = self._scene is None or self._scene.contact.detector != AUTO
-        changed = replace(self, bodies=bodies, detector=self.detector if named else None)
+        changed = replace(self, bodies=bodies, detector=self.detector if self.names_detector else None)
         if self._scene is not None:
             changed = changed.told_by(self._scene, self._detector_why)
         changed.__dict__["document"] = self.document
@@ -187,6 +186,11 @@ class Model(Arrangement, Described):
     def swarm_tables(self) -> tuple[SwarmTable, ...]:
         """Tables of swarms in the scene that it was made of."""
         return () if self._scene is None else self._scene.swarm
+
+    @property
+    def names_detector(self) -> bool:
+        """Tell whether its detector was named, and not chosen for its bodies."""
+        return self.detector is not None and (self._scene is None or self._scene.contact.detector != AUTO)
 
     @property
     def source_tables(self) -> tuple[SourceTable, ...]:

@@ -175,3 +175,11 @@ def test_an_image_comes_to_a_sink() -> None:
     )
     run.go()
     assert list(run.bodies) == ["post"]
+
+
+def test_a_detector_that_is_named_knows_all_shapes_of_a_source() -> None:
+    shapes = [SHAPE[0] | {"weight": 1e6}, {"type": "ellipsoid", "semi_axes": [0.05, 0.04]}]
+    given = tables(source=[SOURCE | {"every": 0.1, "shape": shapes}])
+    scene_from_dict(given)
+    with pytest.raises(SceneError, match=r"contact\.detector"):
+        scene_from_dict(given | {"contact": {"detector": "sphere"}})
