@@ -129,7 +129,7 @@ class Simulation(Described):
 
     @property
     def system(self) -> System:
-        """System that the run moves; `prescribe` and `restore` replace it."""
+        """System that the run moves; `prescribe`, `add`, `remove` and `restore` replace it, and sources and sinks."""
         return self.stepper.system
 
     @property
@@ -307,7 +307,8 @@ class Simulation(Described):
         ------
         SceneError
             If the table is wrong, the body overlaps another one or a wall, or there are joints, mechanisms, springs to
-            the ground, a window, or a backend whose bodies cannot change.
+            the ground, a window, periodic surfaces in a fluid, several processes, or a backend whose bodies cannot
+            change.
         MeshError
             If no mesh can be made around it.
         """
