@@ -183,3 +183,11 @@ def test_a_detector_that_is_named_knows_all_shapes_of_a_source() -> None:
     scene_from_dict(given)
     with pytest.raises(SceneError, match=r"contact\.detector"):
         scene_from_dict(given | {"contact": {"detector": "sphere"}})
+
+
+def test_a_law_leaves_with_the_body_that_it_names() -> None:
+    falling = POST | {"name": "falling", "position": [0.3, 0.4], "velocity": [0.0, -1.0], "fixed": False}
+    law = {"law": "spring-dashpot", "range": 0.02, "stiffness": 1e4, "restitution": 0.5, "names": ["post", "falling"]}
+    run = Simulation(scene_from_dict(dry_tables(POST, falling, interaction=[law], sink=[SINK], end=0.4)))
+    run.go()
+    assert list(run.bodies) == ["post"]
