@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import re
-
 import numpy as np
 
+from rigidfluid.core.case.population_due import seeded_body
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.exchange_tables import SinkTable, SourceTable
 from rigidfluid.core.seeding.draws import Draws
 from rigidfluid.core.seeding.placement import Others
 from rigidfluid.core.seeding.regions import region_of
-from rigidfluid.core.seeding.seed import Occupied, seed
+from rigidfluid.core.seeding.swarm import swarm_of
 from rigidfluid.core.setup.changeable import require_changeable
 from rigidfluid.core.setup.model import Model
 from rigidfluid.errors import SceneError
@@ -23,12 +22,13 @@ def check_exchange(model: Model) -> None:
     with all_told() as ask:
         ask(require_changeable, model)
         for number, source in enumerate(model.source_tables):
-            ask(_check_source, source, f"source.{number}", model)
+            ask(_check_source, source, number, model)
         for number, sink in enumerate(model.sink_tables):
             ask(_check_sink, sink, f"sink.{number}", model)
 
 
-def _check_source(table: SourceTable, at: str, model: Model) -> None:
+def _check_source(table: SourceTable, number: int, model: Model) -> None:
+    at = f"source.{number}"
     if (table.times is None) == (table.every is None):
         found = "neither" if table.times is None else "both"
         raise SceneError(f"{at}.every", f"{found} of times and every", "one of them", "Say when bodies enter.")
@@ -37,13 +37,18 @@ def _check_source(table: SourceTable, at: str, model: Model) -> None:
         raise SceneError(f"{at}.{key}", f"{key} together with times", f"{key} with every", "Leave it out.")
     if table.times is not None and sorted(table.times) != list(table.times):
         raise SceneError(f"{at}.times", list(table.times), "times in order", "Sort them.")
-    alike = [name for name in model.surfaces if re.fullmatch(rf"{re.escape(table.name)}\d+", name)]
+    others = [other.name for other in model.source_tables if other is not table]
+    alike = [name for name in (*model.surfaces, *others) if table.gives(name)]
+    alike += [name for name in others if name == table.name]
     if alike:
         allowed = f"a name whose numbers, as {table.name}0, nobody else has: there is {alike[0]!r}"
         raise SceneError(f"{at}.name", repr(table.name), allowed, "Choose another name.")
     dimension = model.dimension
     nobody = Others((), Pose(np.zeros((0, dimension)), np.zeros((0, 1 if dimension == 2 else 4))))
-    seed(table.swarm(0), at, Draws(model.seed), Occupied(model.domain, nobody, model.registry), grow=False)
+    seeded_body(model, number, 0, nobody)
+    if model.names_detector:
+        shapes = swarm_of(table.swarm(0), at, dimension, Draws(model.seed), model.registry).shapes
+        model.detection[0].part(model.detection[0].options, (*model.shapes, *shapes), model.walls)
 
 
 def _check_sink(table: SinkTable, at: str, model: Model) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator, Mapping
+import re
+from collections.abc import Container, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -19,7 +21,7 @@ from rigidfluid.core.setup.geometry_checks import check_places
 from rigidfluid.core.setup.model import Model
 from rigidfluid.core.setup.rigid_body import RigidBody
 from rigidfluid.core.setup.shape_checks import check_shapes
-from rigidfluid.errors import SceneError
+from rigidfluid.errors import MeshError, SceneError
 
 
 @dataclass(frozen=True)
@@ -127,12 +129,24 @@ def refuse_unknown_name(model: Model, name: str) -> None:
 
 
 def refuse_known_name(population: Population, model: Model, name: str) -> None:
-    """Raise SceneError for the name of a body that enters if another one has or had it: results go by names."""
+    """Raise SceneError for the name of a body that enters if another one has or had it, or a source will give it:
+    results go by names."""
     known = {*model.surfaces, *population.left}
-    if name in known:
+    if name in known or any(source.gives(name) for source in model.source_tables):
         raise SceneError(
-            "body.name", repr(name), "a name that no other body or surface of the run has had", "Change it."
+            "body.name", repr(name), "a name that no other body or surface of the run has had, or gets", "Change it."
         )
+
+
+@contextmanager
+def subjects_by_name(names: Sequence[str]) -> Iterator[None]:
+    """Raise errors about bodies by their ``names``: numbers change as bodies enter and leave."""
+    try:
+        yield
+    except (SceneError, MeshError) as error:
+        raise error.renamed(
+            lambda subject: re.sub(r"^body\.(\d+)", lambda found: f"body {names[int(found[1])]!r}", subject)
+        ) from error
 
 
 def _body(table: Mapping[str, Any], at: str, model: Model) -> RigidBody:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +16,7 @@ from rigidfluid.core.scene.exchange_tables import SinkTable
 from rigidfluid.core.seeding.draws import Draws
 from rigidfluid.core.seeding.placement import Others
 from rigidfluid.core.seeding.regions import region_of
-from rigidfluid.core.seeding.seed import Occupied, seed
+from rigidfluid.core.seeding.seed import Occupied, Seeded, seed
 from rigidfluid.core.setup.model import Model
 from rigidfluid.errors import SceneError
 
@@ -34,7 +35,8 @@ class Moment(NamedTuple):
 
 
 def population_due(now: Moment) -> Population:
-    """The population with those who are due to leave or enter now; the same if nobody is."""
+    """The population with those who are due to leave or enter now; the same if nobody is. Raises SceneError for a
+    source whose next body has no room in its region even without others."""
     population, leaving = now.population, _leaving(now)
     for row in leaving:
         population = population.without(now.system.surfaces[row])
@@ -45,25 +47,35 @@ def population_due(now: Moment) -> Population:
 
 
 def _others(now: Moment, leaving: Sequence[int]) -> Others:
-    stay, pose = np.setdiff1d(np.arange(len(now.system.bodies)), leaving), now.state.pose
-    return Others(tuple(now.system.bodies[row] for row in stay), Pose(pose.position[stay], pose.orientation[stay]))
+    """Bodies that stay, and their images across periodic surfaces, in and next to the domain."""
+    stay, lattice = np.setdiff1d(np.arange(len(now.system.bodies)), leaving), now.system.lattice
+    offsets = np.array(list(product((0, -1, 1), repeat=len(lattice.vectors))), dtype=np.int64)
+    wrapped, rows = lattice.wrapped(now.state.pose.position[stay]), np.tile(stay, len(offsets))
+    position = (lattice.displacement(offsets)[:, None] + wrapped).reshape(-1, wrapped.shape[1])
+    return Others(tuple(now.system.bodies[row] for row in rows), Pose(position, now.state.pose.orientation[rows]))
 
 
 def _after_source(now: Moment, number: int, population: Population, others: Others) -> tuple[Population, Others]:
     """Population and bodies with those that are due from one source, as far as there is room for them."""
-    source, model = now.model.source_tables[number], now.model
+    source = now.model.source_tables[number]
     due, known = source.due(now.time), {table["name"] for table in population.entered}
     for count in range(due):
         if (name := f"{source.name}{count}") in known:
             continue
-        draws = Draws(model.seed, _SOURCES + number, count)
         try:
-            occupied = Occupied(model.domain, others, model.registry)
-            found = seed(source.swarm(count), f"source.{number}", draws, occupied, grow=False)
+            found = seeded_body(now.model, number, count, others)
         except SceneError:
-            break  # among others: without them there is room, which was seen when the scene was loaded
+            seeded_body(now.model, number, count, others.none)  # without room even alone it would wait for ever
+            break
         population, others = population.with_body({**found.tables[0], "name": name}), found.bodies
     return population, others
+
+
+def seeded_body(model: Model, number: int, count: int, others: Others) -> Seeded:
+    """The body of that ``count`` from a source among others; raises SceneError or PluginError where its table is wrong
+    or it has no room."""
+    draws, occupied = Draws(model.seed, _SOURCES + number, count), Occupied(model.domain, others, model.registry)
+    return seed(model.source_tables[number].swarm(count), f"source.{number}", draws, occupied, grow=False)
 
 
 def _leaving(now: Moment) -> list[int]:
@@ -79,7 +91,7 @@ def _has_come(now: Moment, row: int) -> bool:
 
 
 def _is_at(now: Moment, row: int, sink: SinkTable, at: str) -> bool:
-    centre, domain = now.state.pose.position[row : row + 1], now.model.domain
+    centre, domain = now.system.lattice.wrapped(now.state.pose.position[row : row + 1]), now.model.domain
     if sink.region is not None:
         return bool(region_of(sink.region, domain, f"{at}.region", now.model.registry).contains(centre)[0])
     assert sink.on is not None

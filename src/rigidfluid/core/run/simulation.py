@@ -16,6 +16,7 @@ from rigidfluid.core.case.population import (
     refuse_known_name,
     refuse_unknown_name,
     require_one_process,
+    subjects_by_name,
 )
 from rigidfluid.core.case.scene_model import Case, model_of
 from rigidfluid.core.coupling.contact_forces import contact_forces
@@ -63,7 +64,7 @@ from rigidfluid.core.setup.model import Model
 from rigidfluid.core.setup.named_files import file_digests
 from rigidfluid.core.setup.prescribed import PrescribedMotion
 from rigidfluid.described import Described, first_names
-from rigidfluid.errors import ArgumentError, OutputError, StepError
+from rigidfluid.errors import ArgumentError, MeshError, OutputError, SceneError, StepError
 
 
 class Simulation(Described):
@@ -128,7 +129,7 @@ class Simulation(Described):
 
     @property
     def system(self) -> System:
-        """System that the run moves; `prescribe` and `restore` replace it."""
+        """System that the run moves; `prescribe`, `add`, `remove` and `restore` replace it, and sources and sinks."""
         return self.stepper.system
 
     @property
@@ -201,7 +202,8 @@ class Simulation(Described):
         Raises
         ------
         StepError
-            Where even the shortest step fails, memory does not suffice, or the scene's end was reached before.
+            Where even the shortest step fails, a body that is due to enter or leave cannot, memory does not suffice,
+            or the scene's end was reached before.
         OutputError
             Where the disk refuses, or the simulation, which writes to a folder, was closed.
         """
@@ -305,7 +307,8 @@ class Simulation(Described):
         ------
         SceneError
             If the table is wrong, the body overlaps another one or a wall, or there are joints, mechanisms, springs to
-            the ground, a window, or a backend whose bodies cannot change.
+            the ground, a window, periodic surfaces in a fluid, several processes, or a backend whose bodies cannot
+            change.
         MeshError
             If no mesh can be made around it.
         """
@@ -386,15 +389,19 @@ class Simulation(Described):
         require_one_process(self.system.backend)
         from rigidfluid.core.case.population_due import Moment, population_due  # few scenes have any
 
-        population = population_due(Moment(self.model, self.system, self.state, self.population, self.time))
-        if population != self.population:
-            self._exchange(population)
+        try:
+            population = population_due(Moment(self.model, self.system, self.state, self.population, self.time))
+            if population != self.population:
+                self._exchange(population)
+        except (SceneError, MeshError) as error:
+            at = f"bodies that enter or leave at time {self.time:.6g}"
+            raise StepError(at, str(error).rstrip("."), None, "What was computed until then is kept.") from error
 
     def _exchange(self, population: Population) -> None:
         """Go on with other bodies; nothing is changed where they do not fit."""
         require_one_process(self.system.backend)
         before = self.model, self.system, self.population
-        with told_memory(), self._threads(), self.watch("mesh"):
+        with told_memory(), self._threads(), self.watch("mesh"), subjects_by_name(population.names(self._origin)):
             next_one = successor(self._origin, self.model, self.system, self.state, population)
             self._follow(next_one.model, next_one.exchange.after, population)
             try:

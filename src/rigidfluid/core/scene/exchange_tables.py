@@ -35,6 +35,10 @@ class SourceTable(RandomBodies):
         count = 1 + int((time + slack - self.start) / self.every)
         return count if self.number is None else min(count, self.number)
 
+    def gives(self, name: str) -> bool:
+        """Tell whether one of its bodies may have this name."""
+        return name.startswith(self.name) and name[len(self.name) :].isdecimal()
+
     def swarm(self, number: int) -> SwarmTable:
         """The body of that number as a swarm of one."""
         shared = {name: getattr(self, name) for name in RandomBodies.model_fields}

@@ -40,6 +40,11 @@ class Others:
     bodies: tuple[Body, ...]
     pose: Pose
 
+    @property
+    def none(self) -> Others:
+        """Nobody at all."""
+        return Others((), Pose(self.pose.position[:0], self.pose.orientation[:0]))
+
     def joined(self, bodies: tuple[Body, ...], pose: Pose) -> Others:
         """These and further bodies."""
         position = np.concatenate([self.pose.position, pose.position])

@@ -159,9 +159,10 @@ class Model(Arrangement, Described):
 
     def with_bodies(self, bodies: tuple[RigidBody, ...]) -> Model:
         """The same model with other bodies, told in results and checkpoints as this one; a detector that nobody named
-        is chosen for them."""
-        named = self._scene is None or self._scene.contact.detector != AUTO
-        changed = replace(self, bodies=bodies, detector=self.detector if named else None)
+        is chosen for them, and laws for contacts of those that are gone are left out."""
+        gone = {body.name for body in self.bodies} - {body.name for body in bodies}
+        laws = tuple(law for law in self.named_laws if gone.isdisjoint(law.names))
+        changed = replace(self, bodies=bodies, laws=laws, detector=self.detector if self.names_detector else None)
         if self._scene is not None:
             changed = changed.told_by(self._scene, self._detector_why)
         changed.__dict__["document"] = self.document
@@ -187,6 +188,11 @@ class Model(Arrangement, Described):
     def swarm_tables(self) -> tuple[SwarmTable, ...]:
         """Tables of swarms in the scene that it was made of."""
         return () if self._scene is None else self._scene.swarm
+
+    @property
+    def names_detector(self) -> bool:
+        """Tell whether its detector was named, and not chosen for its bodies."""
+        return self.detector is not None and (self._scene is None or self._scene.contact.detector != AUTO)
 
     @property
     def source_tables(self) -> tuple[SourceTable, ...]:

@@ -10,7 +10,7 @@ import pytest
 from scenes import dry_tables, wet_tables
 
 from rigidfluid.api import Simulation, scene_from_dict
-from rigidfluid.errors import SceneError, SceneErrors
+from rigidfluid.errors import SceneError, SceneErrors, StepError
 
 POST = {"name": "post", "type": "sphere", "radius": 0.1, "density": 2.0, "position": [0.8, 0.8], "fixed": True}
 SHAPE = [{"type": "sphere", "radius": 0.05}]
@@ -129,3 +129,65 @@ def test_a_name_that_a_body_has() -> None:
         scene_from_dict(
             dry_tables(POST, POST | {"name": "grain1", "position": [0.2, 0.2]}, source=[SOURCE | {"every": 1.0}])
         )
+
+
+@pytest.mark.parametrize("other", ["grain", "grain1"])
+def test_two_sources_give_no_name_twice(other: str) -> None:
+    """Bodies of the second would count as those of the first, and not enter."""
+    with pytest.raises(SceneError, match=r"source\.\d\.name"):
+        scene_from_dict(tables(source=[SOURCE | {"every": 0.1, "name": name} for name in ("grain", other)]))
+
+
+def test_nobody_takes_a_name_that_a_source_will_give() -> None:
+    run = Simulation(scene_from_dict(tables(sink=[])))
+    with pytest.raises(SceneError, match=r"body\.name"):
+        run.add({"name": "grain7", "type": "sphere", "radius": 0.05, "density": 2.0, "position": [0.3, 0.3]})
+
+
+def test_a_body_that_never_has_room_stops_the_run() -> None:
+    """Only the larger ones, which are drawn later, are too large for the region."""
+    shapes = [SHAPE[0] | {"weight": 5.0}, {"type": "sphere", "radius": 0.2}]
+    run = Simulation(scene_from_dict(tables(source=[SOURCE | {"every": 0.01, "shape": shapes}], sink=[])))
+    with pytest.raises(StepError, match=r"enter or leave at time .*source\.0"):
+        run.go()
+    assert run.state.count > 0
+
+
+WEIGHTLESS = {"gravity": [0.0, 0.0]}
+PERIODIC = [{"on": "left", "type": "periodic"}, {"on": "right", "type": "periodic"}]
+
+
+def test_a_body_waits_for_an_image_to_leave_its_region() -> None:
+    """One ball reaches across the seam into the region at its other side."""
+    seam = POST | {"position": [0.06, 0.75], "velocity": [-1.0, 0.0], "fixed": False}
+    region = {"type": "box", "lower": [0.85, 0.68], "upper": [1.0, 0.82]}
+    source = [SOURCE | {"times": [0.15], "region": region, "velocity": [0.0, 0.0]}]
+    run = Simulation(scene_from_dict(dry_tables(seam, boundary=PERIODIC, source=source, end=0.6, fluid=WEIGHTLESS)))
+    run.go()
+    assert names_over_time(run)["grain0"][0] > 0.25
+
+
+def test_an_image_comes_to_a_sink() -> None:
+    past = POST | {"name": "past", "position": [0.7, 0.4], "velocity": [2.0, 0.0], "fixed": False}
+    region = {"type": "box", "lower": [0.1, 0.2], "upper": [0.4, 0.6]}
+    run = Simulation(
+        scene_from_dict(dry_tables(POST, past, boundary=PERIODIC, sink=[{"region": region}], end=0.5, fluid=WEIGHTLESS))
+    )
+    run.go()
+    assert list(run.bodies) == ["post"]
+
+
+def test_a_detector_that_is_named_knows_all_shapes_of_a_source() -> None:
+    shapes = [SHAPE[0] | {"weight": 1e6}, {"type": "ellipsoid", "semi_axes": [0.05, 0.04]}]
+    given = tables(source=[SOURCE | {"every": 0.1, "shape": shapes}])
+    scene_from_dict(given)
+    with pytest.raises(SceneError, match=r"contact\.detector"):
+        scene_from_dict(given | {"contact": {"detector": "sphere"}})
+
+
+def test_a_law_leaves_with_the_body_that_it_names() -> None:
+    falling = POST | {"name": "falling", "position": [0.3, 0.4], "velocity": [0.0, -1.0], "fixed": False}
+    law = {"law": "spring-dashpot", "range": 0.02, "stiffness": 1e4, "restitution": 0.5, "names": ["post", "falling"]}
+    run = Simulation(scene_from_dict(dry_tables(POST, falling, interaction=[law], sink=[SINK], end=0.4)))
+    run.go()
+    assert list(run.bodies) == ["post"]
