@@ -146,6 +146,7 @@ transferred flow and the short first step leave.
 """
 
 AFTER = """
+
 The residual is signed: energy that came from nowhere is negative. The areas of who entered, who left and who is there
 at the end add up.
 """

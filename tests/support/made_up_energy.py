@@ -17,7 +17,7 @@ def table(states=6, **columns):
     energy |= {"time": 0.1 * np.arange(states), "kinetic": np.full(states, PUT_IN)}
     energy |= {name: np.array(values, dtype=float) for name, values in columns.items()}
     stored = energy["kinetic"] + energy["contact"]
-    incoming = energy["gravity"] + energy["boundary"] + energy["control"] + energy["body_force"]
+    incoming = energy["gravity"] + energy["boundary"] + energy["control"] + energy["body_force"] + energy["exchange"]
     outgoing = energy["dissipation"] + energy["grad_div_loss"] + energy["contact_loss"] + energy["transfer_loss"]
     energy["residual"] = incoming - outgoing - (stored - stored[0])
     energy["residual_steps"] = energy["residual"] - sum(energy[name] for name in PARTS if name != "residual_steps")

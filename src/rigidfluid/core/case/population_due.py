@@ -12,7 +12,7 @@ from rigidfluid.core.case.population import Population
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Pose
-from rigidfluid.core.scene.exchange_tables import SinkTable
+from rigidfluid.core.scene.exchange_tables import SinkTable, SourceTable
 from rigidfluid.core.seeding.draws import Draws
 from rigidfluid.core.seeding.placement import Others
 from rigidfluid.core.seeding.regions import region_of
@@ -38,6 +38,8 @@ def population_due(now: Moment) -> Population:
     """The population with those who are due to leave or enter now; the same if nobody is. Raises SceneError for a
     source whose next body has no room in its region even without others."""
     population, leaving = now.population, _leaving(now)
+    if not leaving and not any(missing(table, population, now.time) for table in now.model.source_tables):
+        return population
     for row in leaving:
         population = population.without(now.system.surfaces[row])
     others = _others(now, leaving)
@@ -58,17 +60,21 @@ def _others(now: Moment, leaving: Sequence[int]) -> Others:
 def _after_source(now: Moment, number: int, population: Population, others: Others) -> tuple[Population, Others]:
     """Population and bodies with those that are due from one source, as far as there is room for them."""
     source = now.model.source_tables[number]
-    due, known = source.due(now.time), {table["name"] for table in population.entered}
-    for count in range(due):
-        if (name := f"{source.name}{count}") in known:
-            continue
+    for count in missing(source, population, now.time):
         try:
             found = seeded_body(now.model, number, count, others)
         except SceneError:
             seeded_body(now.model, number, count, others.none)  # without room even alone it would wait for ever
             break
-        population, others = population.with_body({**found.tables[0], "name": name}), found.bodies
+        entering = {**found.tables[0], "name": f"{source.name}{count}"}
+        population, others = population.with_body(entering), found.bodies
     return population, others
+
+
+def missing(source: SourceTable, population: Population, time: float) -> list[int]:
+    """Counts of the bodies of a source that are due by a ``time`` and have not entered."""
+    known = {table["name"] for table in population.entered}
+    return [count for count in range(source.due(time)) if f"{source.name}{count}" not in known]
 
 
 def seeded_body(model: Model, number: int, count: int, others: Others) -> Seeded:

@@ -1,4 +1,4 @@
-"""Remarks of a run's summary, and those on boundary layers that its cells did not resolve."""
+"""Remarks of a run's summary, those on boundary layers that its cells did not resolve, and on sources."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ from typing import Literal
 
 import numpy as np
 
+from rigidfluid.core.case.population import Population
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.boundary_layer import CELLS_WANTED
 from rigidfluid.core.mesh.generation.layer_cells import FEWEST_CELLS, thinnest_layer
 from rigidfluid.core.model.system import System
+from rigidfluid.core.setup.model import Model
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,3 +41,21 @@ def layer_remarks(system: System, highest_speed: FloatArray, size_body: float | 
     )
     remedy = f"Set mesh.size_body to {layer.thickness / CELLS_WANTED:.2g} or less and compare."
     return [Remark("note" if layer.cells >= FEWEST_CELLS else "warning", text, remedy)]
+
+
+def source_remarks(model: Model, population: Population, time: float) -> list[Remark]:
+    """Note each source with bodies that were due by a ``time`` and had no room."""
+    if not model.source_tables:
+        return []
+    from rigidfluid.core.case.population_due import missing  # few scenes have any
+
+    waiting = {source.name: len(missing(source, population, time)) for source in model.source_tables}
+    return [
+        Remark(
+            "note",
+            f"{count} bodies of the source {name!r} were due and had no room in its region",
+            "Widen source.region, or let bodies enter more seldom.",
+        )
+        for name, count in waiting.items()
+        if count
+    ]

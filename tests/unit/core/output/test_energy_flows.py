@@ -78,7 +78,7 @@ def test_an_error_at_a_constant_rate_is_the_same_however_long_the_run_is(sign):
         assert max(shares(energy)) == pytest.approx(0.01, rel=1e-6)
 
 
-@pytest.mark.parametrize("way", ["contact", "control", "body_force", "gravity"])
+@pytest.mark.parametrize("way", ["contact", "control", "body_force", "gravity", "exchange"])
 def test_a_loss_is_told_where_nothing_was_put_in(way):
     """Bodies attract each other at the start; work that only takes."""
     taken = {"contact": [-1.0] * 6} if way == "contact" else {way: -0.2 * np.arange(6)}
@@ -152,7 +152,7 @@ def test_what_is_at_hand():
     assert energy_account(attracted).at_hand == 5.0
 
 
-@pytest.mark.parametrize("way", ["gravity", "boundary", "control", "body_force"])
+@pytest.mark.parametrize("way", ["gravity", "boundary", "control", "body_force", "exchange"])
 def test_a_longer_way_does_not_make_an_error_small(way):
     """A steady fall, or drive, in which the same energy vanishes once."""
     for lengths in (1, 2, 4):

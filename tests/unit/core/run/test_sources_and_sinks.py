@@ -74,6 +74,9 @@ def test_a_body_waits_for_room() -> None:
     first = sorted(when for name, (when, _) in names_over_time(run).items() if name != "post")
     assert len(first) >= 2
     assert all(gap >= 0.1 - 0.02 for gap in np.diff(first))
+    run.finish("complete")
+    waiting = 13 - len(first)
+    assert run.history.summary["remarks"][-1]["text"].startswith(f"{waiting} bodies of the source 'grain' were due")
 
 
 def test_bodies_leave_in_a_region() -> None:
