@@ -60,6 +60,12 @@ def test_mechanisms_are_refused_beside_periodic_surfaces() -> None:
         scene_from_dict(tables(mechanism=[swimmer]))
 
 
+def test_detectors_on_the_mesh_are_refused_beside_periodic_surfaces() -> None:
+    given = tables(BALL | {"position": [1.0, 0.5]}, contact=CONTACT | {"detector": "narrow_band"})
+    with pytest.raises(SceneError, match="narrow_band"):
+        scene_from_dict(given)
+
+
 def test_a_body_ends_the_run_where_images_of_walls_are_not_known() -> None:
     obstacle = {"name": "post", "type": "sphere", "radius": 0.1, "position": [1.0, 0.2]}
     domain = {"type": "channel", "lower": [0.0, 0.0], "upper": [LENGTH, 1.0], "obstacle": [obstacle]}
