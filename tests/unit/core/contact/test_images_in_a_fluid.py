@@ -53,6 +53,16 @@ def test_a_collision_across_the_seam_is_one_in_the_middle() -> None:
     assert abs(created) < 5e-3
 
 
+def test_a_flow_given_in_the_domain_is_the_same_where_the_mesh_goes_on_beyond_it() -> None:
+    energies = []
+    for place, centre in ((1.95, 0.25), (0.95, 1.25)):
+        swirl = ["0", f"exp(-((x-{centre})/0.15)**2)*y*(1-y)"]
+        body = BALL | {"position": [place, 0.5]}
+        run = Simulation(scene_from_dict(tables(body, fluid={"viscosity": 0.05, "initial": swirl})))
+        energies.append(run.state.ledger.kinetic)
+    assert energies[0] == pytest.approx(energies[1], rel=0.03)
+
+
 def test_mechanisms_are_refused_beside_periodic_surfaces() -> None:
     keys = {"radius": 0.05, "density": 1.0, "arms": 0.2, "amplitude": 0.05, "speed": 0.1}
     swimmer = keys | {"type": "three_sphere_swimmer", "position": [1.0, 0.5]}
