@@ -76,6 +76,13 @@ def test_detectors_on_the_mesh_are_refused_beside_periodic_surfaces() -> None:
         scene_from_dict(given)
 
 
+def test_a_body_longer_than_the_period_stays_in_the_domain() -> None:
+    needle = {"type": "ellipsoid", "semi_axes": [0.05, 0.7], "density": 2.0, "position": [0.5, 1.0]}
+    domain, sizes = {"lower": [0.0, 0.0], "upper": [1.0, 2.0]}, {"size": 0.3, "size_body": 0.06}
+    given = tables(needle, domain=domain, mesh=sizes)
+    assert len(Simulation(scene_from_dict(given)).system.lattice.vectors) == 0
+
+
 def test_a_body_ends_the_run_where_images_of_walls_are_not_known() -> None:
     obstacle = {"name": "post", "type": "sphere", "radius": 0.1, "position": [1.0, 0.2]}
     domain = {"type": "channel", "lower": [0.0, 0.0], "upper": [LENGTH, 1.0], "obstacle": [obstacle]}
