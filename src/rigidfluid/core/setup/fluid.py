@@ -101,13 +101,14 @@ class Fluid:
 
     def problem(self, conditions: tuple[BoundaryCondition, ...], motions: Motions, domain: Domain) -> FluidProblem:
         """Equations with conditions on the boundary of a ``domain``, around bodies that ``motions`` carry."""
+        images = (each.in_each_image(domain.wrapped) for each in conditions)
         return FluidProblem(
             dimension=domain.dimension,
             bodies=len(motions.carrier),
             density=self.density,
             material=self.material,
             inertia=self.inertia,
-            conditions=conditions,
+            conditions=tuple(images) if domain.periodic else conditions,
             source=None if self.source is None else _in_each_image(self.source, domain),
             carrier=tuple(motions.carrier.tolist()),
             initial=self.initial if isinstance(self.initial, str) else _in_each_image(self.initial, domain),

@@ -63,6 +63,18 @@ def test_a_flow_given_in_the_domain_is_the_same_where_the_mesh_goes_on_beyond_it
     assert energies[0] == pytest.approx(energies[1], rel=0.03)
 
 
+def test_a_velocity_given_on_a_surface_is_the_same_beyond_the_seam() -> None:
+    works = []
+    for place, centre in ((1.93, 0.35), (0.93, 1.35)):
+        top = {"on": "top", "type": "velocity", "velocity": [f"exp(-((x-{centre})/0.2)**2)", "0"]}
+        given = tables(BALL | {"position": [place, 0.5]}, boundary=[*SIDES, top])
+        run = Simulation(scene_from_dict(given))
+        run.step()
+        works.append(run.state.ledger.boundary)
+    assert works[0] == pytest.approx(works[1], rel=0.05)
+    assert works[0] > 1e-6
+
+
 def test_mechanisms_are_refused_beside_periodic_surfaces() -> None:
     keys = {"radius": 0.05, "density": 1.0, "arms": 0.2, "amplitude": 0.05, "speed": 0.1}
     swimmer = keys | {"type": "three_sphere_swimmer", "position": [1.0, 0.5]}
