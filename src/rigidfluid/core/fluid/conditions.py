@@ -24,6 +24,10 @@ WallValue = Callable[[FloatArray], FloatArray]
 """Velocities (N, d) of a wall at its points (N, d), the same at any time."""
 
 
+Place = Callable[[FloatArray], FloatArray]
+"""The points (N, d) in a periodic domain whose images are at some points (N, d) [length]."""
+
+
 def no_pressure(time: float, points: FloatArray) -> FloatArray:
     """Zero (N,) at ``points`` (N, d)."""
     return np.zeros(len(points))
@@ -105,6 +109,10 @@ class BoundaryCondition(ABC):
         """The condition on the first piece of a periodic pair, whose other one has this number."""
         return self
 
+    def in_each_image(self, original: Place) -> Self:
+        """The condition with the values of its ``original`` place at all images of a periodic domain."""
+        return self
+
     @property
     def is_seam(self) -> bool:
         """Tell whether it is only where a periodic domain is cut open, and its facets may be off the flat piece."""
@@ -157,6 +165,11 @@ class NoSlip(BoundaryCondition):
         """Velocity (N, d) of the wall at ``points`` (N, d) [length/time]."""
         return np.zeros_like(points) if self.sliding is None else self.sliding(points)
 
+    def in_each_image(self, original: Place) -> Self:
+        """The same wall with the same velocity in each image."""
+        sliding = self.sliding
+        return self if sliding is None else replace(self, sliding=lambda points: sliding(original(points)))
+
     @property
     def rests(self) -> bool:
         """Tell whether no velocity is given."""
@@ -173,6 +186,10 @@ class PrescribedVelocity(BoundaryCondition):
     prescribes_normal = True
     prescribes_tangential = True
     passes = True
+
+    def in_each_image(self, original: Place) -> Self:
+        """The same velocity in each image."""
+        return replace(self, value=lambda time, points: self.value(time, original(points)))
 
     @property
     def data(self) -> Value:
@@ -194,6 +211,10 @@ class PrescribedPressure(BoundaryCondition):
     prescribes_normal = False
     prescribes_tangential = True
     passes = True
+
+    def in_each_image(self, original: Place) -> Self:
+        """The same pressure in each image."""
+        return replace(self, value=lambda time, points: self.value(time, original(points)))
 
     @property
     def data(self) -> Value:

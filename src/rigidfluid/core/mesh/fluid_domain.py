@@ -38,7 +38,8 @@ class FluidDomain:
         """The closest points (N, d) of a surface, by its number, to ``points`` (N, d) [length]."""
         if surface < len(self.bodies):
             return self._closest_on_body(surface, points)
-        return self.domain.pieces[surface - len(self.bodies)].shape.closest_point(points)
+        there = self.domain.wrapped(points)
+        return self.domain.pieces[surface - len(self.bodies)].shape.closest_point(there) + (points - there)
 
     def _closest_on_body(self, body: int, points: FloatArray) -> FloatArray:
         """The closest points (N, d) of a body and its images."""
@@ -91,18 +92,19 @@ class FluidDomain:
 
     def nearest_wall(self, points: FloatArray) -> FloatArray:
         """Distance to the nearest wall, (N,), infinite without walls [length]."""
-        distance = np.full(len(points), np.inf)
+        distance, there = np.full(len(points), np.inf), self.domain.wrapped(points)
         for wall in self.walls:
-            np.minimum(distance, np.maximum(wall.shape.signed_distance(points), 0.0), out=distance)
+            np.minimum(distance, np.maximum(wall.shape.signed_distance(there), 0.0), out=distance)
         return distance
 
     def gap_widths(self, points: FloatArray) -> FloatArray:
         """Distance to the nearest body and that to the next surface together, (N,) [length]."""
         first, second = self.two_nearest_bodies(points, np.inf)
         periodic = [number for pair in self.domain.periodic for number in pair]
+        there = self.domain.wrapped(points)
         for number, piece in enumerate(self.domain.pieces):
             if number not in periodic:
-                np.minimum(second, np.abs(piece.shape.signed_distance(points)), out=second)
+                np.minimum(second, np.abs(piece.shape.signed_distance(there)), out=second)
         return first + second
 
 

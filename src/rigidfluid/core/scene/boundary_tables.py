@@ -87,10 +87,10 @@ class SlipTable(_BoundaryTable):
 class PeriodicTable(_BoundaryTable):
     """On two opposite surfaces: what flows out through one comes in through the other.
 
-    With `backend = "dry"` bodies cross them, and meet images of each other. Pairs are then at right angles to each
-    other, all other surfaces flat and along the way across, and a body's longest diameter and the range of the laws are
-    together less than the distance of the surfaces. Positions in results go on beyond the domain. With a fluid, bodies
-    stay between them.
+    Bodies cross them, and meet images of each other. Pairs are then at right angles to each other, all other surfaces
+    flat and along the way across, and a body's longest diameter and the range of the laws are together less than the
+    distance of the surfaces. Positions in results go on beyond the domain. With a fluid there may be other surfaces,
+    such as obstacles: a run then ends where the centre of a body leaves the domain.
     """
 
     type: Literal["periodic"] = Field(description="The condition")

@@ -51,7 +51,7 @@ def assemble(model: Model, check: Callable[[Model, Pose], None] = check_geometry
     pose = motions.poses(motions.pose, 0.0)
     check(model, pose)
     window = build_window(model, pose)
-    problem = model.fluid.problem(open_wake_end(model.conditions, window), motions, model.dimension)
+    problem = model.fluid.problem(open_wake_end(model.conditions, window), motions, model.domain)
     joints = build_joints(model, pose, motions, given, _least_resistance(model))
     motions = motions.starting_with(joints.fitting(motions.pose, motions.twist, 0.0))
     loads = build_loads(model, masses, motions, joints)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rigidfluid.core.contact.path.detection import detection_by
 from rigidfluid.core.fluid.conditions import Periodic, no_pressure
 from rigidfluid.core.mechanics.wall_velocity import WallVelocity
 from rigidfluid.core.setup.boundary_data import BoundaryData
@@ -111,6 +112,10 @@ def check_periodic(model: Model) -> None:
     for other in oblique_conditions(model):
         found = f"'periodic' together with {other.type!r} on {other.name!r}, which does not lie across an axis"
         raise SceneError(at, found, "'wall' there", "Make it a wall, or do without periodic surfaces.")
+    detector = model.detection[0].part
+    if model.wet and detection_by(detector).on_mesh:
+        found = f"{detector.name!r} with periodic surfaces, on whose mesh bodies may be images of themselves"
+        raise SceneError("contact.detector", found, "a detector that needs no mesh", 'Use detector = "auto".')
     if not model.wet:
         _refuse_dry_drop(model)
         check_crossed(model, at)

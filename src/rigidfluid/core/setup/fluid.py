@@ -99,19 +99,27 @@ class Fluid:
             self.material.dynamic_viscosity, radius, self.mesh.size_body / 2**self.mesh.refinements, self.inertia
         )
 
-    def problem(self, conditions: tuple[BoundaryCondition, ...], motions: Motions, dimension: int) -> FluidProblem:
-        """Equations with conditions on the boundary, around bodies that ``motions`` carry."""
+    def problem(self, conditions: tuple[BoundaryCondition, ...], motions: Motions, domain: Domain) -> FluidProblem:
+        """Equations with conditions on the boundary of a ``domain``, around bodies that ``motions`` carry."""
+        images = (each.in_each_image(domain.wrapped) for each in conditions)
         return FluidProblem(
-            dimension=dimension,
+            dimension=domain.dimension,
             bodies=len(motions.carrier),
             density=self.density,
             material=self.material,
             inertia=self.inertia,
-            conditions=conditions,
-            source=self.source,
+            conditions=tuple(images) if domain.periodic else conditions,
+            source=None if self.source is None else _in_each_image(self.source, domain),
             carrier=tuple(motions.carrier.tolist()),
-            initial=self.initial,
+            initial=self.initial if isinstance(self.initial, str) else _in_each_image(self.initial, domain),
         )
+
+
+def _in_each_image(value: Value, domain: Domain) -> Value:
+    """The ``value`` in a domain, the same in its images between periodic surfaces, where a mesh may go on."""
+    if not domain.periodic:
+        return value
+    return lambda time, points: value(time, domain.wrapped(points))
 
 
 @checked
@@ -147,5 +155,5 @@ class NoFluid:
     def film(self, bodies: Sequence[Body]) -> None:
         """None: there are no films."""
 
-    def problem(self, conditions: tuple[BoundaryCondition, ...], motions: Motions, dimension: int) -> None:
+    def problem(self, conditions: tuple[BoundaryCondition, ...], motions: Motions, domain: Domain) -> None:
         """None: there are no equations."""

@@ -23,10 +23,11 @@ _ALONG = 1e-12
 
 def crossed_lattice(model: Model) -> Lattice:
     """The lattice by which bodies of a model cross its periodic surfaces; without vectors in a fluid where something is
-    not the same in each image, as obstacles: there they may stay in the domain."""
+    not the same in each image, as obstacles, or a body is too long: there they may stay in the domain."""
     if model.wet and model.domain.periodic:
         try:
             check_crossed(model, "boundary")
+            check_lengths(model.shapes, model.domain.cells, 0.0)
         except SceneError:
             return model.domain.alone
     return model.domain.cells

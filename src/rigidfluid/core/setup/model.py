@@ -255,5 +255,6 @@ class Model(Arrangement, Described):
         """The detector, and who chose it for what reason."""
         if self.detector is not None:
             return self.detector, self._detector_why
-        part, why = choose_detector(self.shapes, self.domain.pieces, self.wet and bool(self.laws), self.registry)
+        mesh = self.wet and bool(self.laws) and not self.domain.periodic
+        part, why = choose_detector(self.shapes, self.domain.pieces, mesh, self.registry)
         return Selected(part, part.Options()), why

@@ -53,11 +53,46 @@ def test_a_collision_across_the_seam_is_one_in_the_middle() -> None:
     assert abs(created) < 5e-3
 
 
+def test_a_flow_given_in_the_domain_is_the_same_where_the_mesh_goes_on_beyond_it() -> None:
+    energies = []
+    for place, centre in ((1.95, 0.25), (0.95, 1.25)):
+        swirl = ["0", f"exp(-((x-{centre})/0.15)**2)*y*(1-y)"]
+        body = BALL | {"position": [place, 0.5]}
+        run = Simulation(scene_from_dict(tables(body, fluid={"viscosity": 0.05, "initial": swirl})))
+        energies.append(run.state.ledger.kinetic)
+    assert energies[0] == pytest.approx(energies[1], rel=0.03)
+
+
+def test_a_velocity_given_on_a_surface_is_the_same_beyond_the_seam() -> None:
+    works = []
+    for place, centre in ((1.93, 0.35), (0.93, 1.35)):
+        top = {"on": "top", "type": "velocity", "velocity": [f"exp(-((x-{centre})/0.2)**2)", "0"]}
+        given = tables(BALL | {"position": [place, 0.5]}, boundary=[*SIDES, top])
+        run = Simulation(scene_from_dict(given))
+        run.step()
+        works.append(run.state.ledger.boundary)
+    assert works[0] == pytest.approx(works[1], rel=0.05)
+    assert works[0] > 1e-6
+
+
 def test_mechanisms_are_refused_beside_periodic_surfaces() -> None:
     keys = {"radius": 0.05, "density": 1.0, "arms": 0.2, "amplitude": 0.05, "speed": 0.1}
     swimmer = keys | {"type": "three_sphere_swimmer", "position": [1.0, 0.5]}
     with pytest.raises(SceneError, match="mechanisms"):
         scene_from_dict(tables(mechanism=[swimmer]))
+
+
+def test_detectors_on_the_mesh_are_refused_beside_periodic_surfaces() -> None:
+    given = tables(BALL | {"position": [1.0, 0.5]}, contact=CONTACT | {"detector": "narrow_band"})
+    with pytest.raises(SceneError, match="narrow_band"):
+        scene_from_dict(given)
+
+
+def test_a_body_longer_than_the_period_stays_in_the_domain() -> None:
+    needle = {"type": "ellipsoid", "semi_axes": [0.05, 0.7], "density": 2.0, "position": [0.5, 1.0]}
+    domain, sizes = {"lower": [0.0, 0.0], "upper": [1.0, 2.0]}, {"size": 0.3, "size_body": 0.06}
+    given = tables(needle, domain=domain, mesh=sizes)
+    assert len(Simulation(scene_from_dict(given)).system.lattice.vectors) == 0
 
 
 def test_a_body_ends_the_run_where_images_of_walls_are_not_known() -> None:

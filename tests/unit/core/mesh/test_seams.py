@@ -8,8 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mesh_tools import ball
+from scenes import wet_tables
 from scipy.sparse import csc_array
 
+from rigidfluid.api import Simulation, scene_from_dict
 from rigidfluid.backends.scikit_fem.backend import ScikitFem
 from rigidfluid.core.fluid.conditions import Periodic, Value
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
@@ -146,6 +148,21 @@ def test_a_seam_that_is_bad_next_to_a_body_is_given_up() -> None:
     cut = cut_around(mesh, near, np.zeros((1, 1), dtype=np.int64), 0.0)
     assert_whole(cut, near)
     assert not is_badly_cut(remesh(cut, near, SIZES), near, SIZES)
+
+
+def test_obstacles_on_the_other_side_of_the_seam_have_their_shape_and_size_there() -> None:
+    post = {"name": "post", "type": "sphere", "radius": 0.1, "position": [0.2, 0.25]}
+    domain = {"type": "channel", "lower": [0.0, 0.0], "upper": [2.0, 1.0], "obstacle": [post]}
+    sides = [{"on": side, "type": "periodic"} for side in ("left", "right")]
+    body = {"type": "sphere", "radius": 0.1, "density": 20.0, "position": [1.88, 0.3]}
+    sizes = {"size": 0.15, "size_body": 0.05, "order": 2}
+    given = wet_tables(body, domain=domain, boundary=sides, mesh=sizes, fluid={"viscosity": 0.05}, end=0.1, step=0.01)
+    mesh = Simulation(scene_from_dict(given)).state.mesh
+    bent = mesh.curved.surface == mesh.markers.max()
+    centre = np.array([2.2, 0.25])  # the mesh is cut open left of the body
+    radii = np.linalg.norm(mesh.curved.middles[bent] - centre, axis=1)
+    np.testing.assert_allclose(radii, 0.1, rtol=1e-12)
+    assert bent.sum() == (mesh.markers == mesh.markers.max()).sum() > 20
 
 
 def test_a_seam_moves_with_the_mesh_and_images_alike() -> None:

@@ -258,7 +258,7 @@ def _refuse_to_cross(system: System, pose: Pose) -> None:
         raise StepRejected(
             f"body {system.surfaces[outside[0]]!r}",
             f"its centre at {pose.position[outside[0]].tolist()}, beyond a periodic surface",
-            "bodies that stay in a domain with obstacles, curved or oblique walls, or long-range forces",
+            "bodies that stay in a domain with obstacles, curved or oblique walls, long-range forces or longer bodies",
             "Lengthen the domain, end the run before, or hold the body.",
         )
 

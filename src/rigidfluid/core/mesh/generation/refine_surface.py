@@ -87,7 +87,8 @@ def middles_on_surfaces(mesh: Mesh, edges: IntArray, fluid_domain: FluidDomain) 
     on_bodies, on_domain = np.split(belongs, [len(fluid_domain.bodies)], axis=1)
     for i in np.flatnonzero(on_bodies.any(axis=0)).tolist():
         middles[on_bodies[:, i]] = fluid_domain.closest_points(i, middles[on_bodies[:, i]])
-    return put_on_surfaces(middles, [piece.shape for piece in fluid_domain.domain.pieces], on_domain)
+    there = fluid_domain.domain.wrapped(middles)
+    return put_on_surfaces(there, [piece.shape for piece in fluid_domain.domain.pieces], on_domain) + (middles - there)
 
 
 def on_kept_surfaces(mesh: Mesh, fluid_domain: FluidDomain) -> BoolArray:

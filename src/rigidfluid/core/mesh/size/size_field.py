@@ -65,7 +65,7 @@ def size_between(
     points: FloatArray, first: FloatArray, second: FloatArray, fluid_domain: FluidDomain, sizes: Sizes
 ) -> FloatArray:
     """`wanted_size` of points at distances ``first`` and ``second`` (N,) from the two nearest bodies, (N,) [length]."""
-    open_size = _size_at(first, points, sizes)
+    open_size = _size_at(first, points, fluid_domain, sizes)
     near = np.flatnonzero(first < 1.001 * sizes.cells_per_gap * open_size)  # elsewhere no gap is narrow
     gap = first[near] + np.minimum(second[near], fluid_domain.nearest_wall(points[near]))
     wanted = open_size.copy()
@@ -88,11 +88,12 @@ def size_away_from_gaps(points: FloatArray, fluid_domain: FluidDomain, sizes: Si
     h = min(size, size_body + growth·d₁, size_r + growth·d_r, h_f) for all regions r at distances d_r and size fields f.
     """
     first, _ = fluid_domain.two_nearest_bodies(points, reach_of_bodies(sizes))
-    return _size_at(first, points, sizes)
+    return _size_at(first, points, fluid_domain, sizes)
 
 
-def _size_at(first: FloatArray, points: FloatArray, sizes: Sizes) -> FloatArray:
-    """h of points at distances ``first`` (N,) from the nearest body."""
+def _size_at(first: FloatArray, points: FloatArray, fluid_domain: FluidDomain, sizes: Sizes) -> FloatArray:
+    """h of points at distances ``first`` (N,) from the nearest body; regions and fields are those in the domain."""
+    points = fluid_domain.domain.wrapped(points)
     wanted = np.minimum(sizes.size_body + sizes.growth * first, sizes.size)
     for region in sizes.regions:
         np.minimum(wanted, region.size + sizes.growth * region.distance(points), out=wanted)
