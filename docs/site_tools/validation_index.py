@@ -55,6 +55,7 @@ SUBJECTS = {
         "dumbbell_in_shear": "Two balls on a rod turn in shear: period compared with the exact one",
     },
     "Meshes and distances": {
+        "seams": "Disks that cross periodic surfaces: paths from two places and in a longer channel, and momentum",
         "enter_and_leave": "Ten bodies enter a box of fluid and leave it: account of energy and area",
         "seeding": "Seeded swarms: fraction, gaps, radial distribution and cost",
         "insertion": "Bodies inserted into domains: cell quality and failures",
