@@ -43,14 +43,14 @@ class Population:
     @classmethod
     def from_dict(cls, stored: Mapping[str, Any]) -> Population:
         """Population as `to_dict` gave it."""
-        return cls(tuple(stored["entered"]), tuple(stored["left"]))
+        return cls(tuple(stored["entered"]), tuple(stored["gone"]))
 
     def __bool__(self) -> bool:
         return bool(self.entered or self.left)
 
     def to_dict(self) -> dict[str, Any]:
         """Values that JSON can hold, for checkpoints and summaries."""
-        return {"entered": list(self.entered), "left": list(self.left)}
+        return {"entered": list(self.entered), "gone": list(self.left)}
 
     def with_body(self, table: Mapping[str, Any]) -> Population:
         """One with a body more, last of all."""

@@ -32,4 +32,4 @@ def read_changes(folder: Path, summary: Mapping[str, Any]) -> Mapping[str, Any]:
     """Who has entered and left a run of this ``summary``, which is empty where it has not ended."""
     if not summary:
         return read_population(folder / CHECKPOINT)
-    return dict(summary.get("population", {"entered": [], "left": []}))
+    return dict(summary.get("population", {"entered": [], "gone": []}))

@@ -183,7 +183,7 @@ def test_joined_bodies_do_not_repel_but_the_next_ones_do():
     joint = [hinge("b", "a", at=[0.265, 0.5]), hinge("b", "c", at=[0.495, 0.5])]
     scene = scene_from_dict(tables(*bodies, apart, joint=joint, contact=LAW))
     system, parts = build_system(scene), model_of(scene)
-    near = initial_contacts(system.domain, parts.exact_detector, system.bodies, system.pose, np.inf)
+    near = initial_contacts(parts, system.pose, np.inf)
     acting = interacting(system, near)
     names = {
         tuple(sorted(system.surfaces[i] for i in pair))

@@ -52,7 +52,8 @@ def contacts(count, at=0.0):
 
 
 def changed(found, row, **values):
-    columns = {field.name: getattr(found, field.name).copy() for field in fields(found)}
+    known = {field.name: getattr(found, field.name) for field in fields(found)}
+    columns = {name: column.copy() for name, column in known.items() if column is not None}
     for name, value in values.items():
         columns[name][row] = value
     return Contacts(**columns)

@@ -174,11 +174,11 @@ def test_the_report_of_a_run_in_space(dry: Path) -> None:
 
 
 def test_statistics_are_of_bodies_that_stay(dry: Path, falling: Results) -> None:
-    contacts = load_results(dry).contacts
+    tables = {"contacts": load_results(dry).contacts, "stresslets": {}}
     with pytest.raises(OutputError, match=r"bodies that enter or leave: a, guest.*--since"):
-        measured(falling, contacts, 0.0, None, "y")
+        measured(falling, tables, 0.0, None, "y")
     for since, until, names in [(0.0, 0.02, ("a", "b")), (0.05, None, ("b", "guest"))]:
-        assert measured(falling, contacts, since, until, "y").samples.name == names
+        assert measured(falling, tables, since, until, "y").samples.name == names
 
 
 @pytest.mark.long

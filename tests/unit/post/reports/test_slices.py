@@ -20,7 +20,7 @@ from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.types import Fields
 from rigidfluid.core.output.cell_gradients import EDGES
 from rigidfluid.post.reports import report
-from rigidfluid.post.reports.bodies import cut, rotations
+from rigidfluid.post.reports.bodies import cut, placed_bodies
 from rigidfluid.post.reports.canvas import Canvas, Shell
 from rigidfluid.post.reports.coefficients import reference
 from rigidfluid.post.reports.narrowest import gap_middle
@@ -137,14 +137,14 @@ def tilted(tmp_path_factory: pytest.TempPathFactory) -> Results:
 
 
 def test_an_ellipsoid_is_cut_in_its_true_ellipse(tilted: Results) -> None:
-    plane, body = view_plane(tilted), tilted.system.bodies[0]
-    centre, turn = tilted.quantity("position")[-1, 0], rotations(tilted, -1)[0]
-    (curve,) = cut(body, centre, turn, plane, centre)
+    plane, (body,) = view_plane(tilted), placed_bodies(tilted, -1)
+    centre = body.centre
+    (curve,) = cut(body, plane, centre)
     own = (curve - plane.flat(centre)) / (0.4, 0.1)
     np.testing.assert_allclose(np.linalg.norm(own, axis=1), 1.0, atol=0.01)
-    (beside,) = cut(body, centre, turn, plane, centre + 0.1 * plane.normal)
+    (beside,) = cut(body, plane, centre + 0.1 * plane.normal)
     assert np.ptp(beside[:, 0]) == pytest.approx(2.0 * 0.4 * np.sqrt(0.75), rel=0.01)
-    assert cut(body, centre, turn, plane, centre + 0.21 * plane.normal) == []
+    assert cut(body, plane, centre + 0.21 * plane.normal) == []
 
 
 @pytest.mark.parametrize("gap", [0.1, 1e-6])
