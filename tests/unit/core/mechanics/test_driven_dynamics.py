@@ -86,7 +86,8 @@ def system_of(motions: CarriedBodies, dimension: int) -> Any:
     joints = SimpleNamespace(with_springs=lambda wrench, *_: wrench, links=lambda *_: None)
     count = len(motions.carrier)
     return SimpleNamespace(
-        motions=motions, dimension=dimension, solved_joints=joints, has_fluid=True, stresslets=False, weight=np.zeros((count, dimension)),
+        motions=motions, dimension=dimension, solved_joints=joints, has_fluid=True, stresslets=False,
+        weight=np.zeros((count, dimension)),
         inertia=motions._own_inertia, prescribed=np.zeros(count, dtype=bool), prescribed_twist=lambda _: None,
     )  # fmt: skip
 
