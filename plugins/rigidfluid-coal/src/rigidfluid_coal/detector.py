@@ -28,6 +28,9 @@ from rigidfluid_coal.narrow_phase import NarrowPhase
 from rigidfluid_coal.refinement import extent, farthest, refined, separation, shape_matrices
 from rigidfluid_coal.shapes import semi_axes
 
+_COLUMNS = tuple(name for name in Contacts.__slots__ if name != "shift")
+"""Columns of contacts; displacements of images are none of a detector's."""
+
 
 class CoalDetector(Detector):
     """Contacts of balls and ellipsoids (disks and ellipses in 2D) with each other and with flat walls.
@@ -117,9 +120,9 @@ class CoalDetector(Detector):
 
 
 def _take(contacts: Contacts, chosen: IntArray | BoolArray) -> Contacts:
-    return Contacts(*(getattr(contacts, field)[chosen] for field in Contacts.__slots__))
+    return Contacts(**{name: getattr(contacts, name)[chosen] for name in _COLUMNS})
 
 
 def _sorted(parts: Sequence[Contacts]) -> Contacts:
-    merged = Contacts(*(np.concatenate([getattr(part, field) for part in parts]) for field in Contacts.__slots__))
+    merged = Contacts(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in _COLUMNS})
     return _take(merged, np.lexsort((merged.body_b, merged.body_a)))
