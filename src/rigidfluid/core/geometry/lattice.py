@@ -27,9 +27,13 @@ class Lattice:
         """Length of the shortest vector, infinite without any [length]."""
         return float(self.lengths.min(initial=np.inf))
 
+    def components(self, differences: FloatArray) -> FloatArray:
+        """Components d·v_i/|v_i|² of ``differences`` (N, d), (N, k) [1]."""
+        return np.asarray(differences @ (self.vectors / self.lengths[:, None] ** 2).T)
+
     def coordinates(self, points: FloatArray) -> FloatArray:
         """Coordinates (x - x₀)·v_i/|v_i|² of ``points`` (N, d), (N, k) [1]."""
-        return np.asarray((points - self.origin) @ (self.vectors / self.lengths[:, None] ** 2).T)
+        return self.components(points - self.origin)
 
     def cells(self, points: FloatArray) -> IntArray:
         """Cells of ``points`` (N, d), (N, k)."""

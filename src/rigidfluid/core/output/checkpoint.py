@@ -109,7 +109,7 @@ def read_scene(path: Path) -> dict[str, Any]:
 
 
 def read_population(path: Path) -> dict[str, Any]:
-    """Who has entered and left the run that a checkpoint is of; raises OutputError as read_scene does."""
+    """The bodies that entered and left the run of a checkpoint; raises OutputError as read_scene does."""
     with _opened(path) as file:
         return json_table("population", load_value(file, "population", str, ALONE))
 

@@ -29,7 +29,7 @@ def read_document(folder: Path, needed: Iterable[str] = ("scene", "status")) -> 
 
 
 def read_changes(folder: Path, summary: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Who has entered and left a run of this ``summary``, which is empty where it has not ended."""
+    """The bodies that entered and left a run of this ``summary``, which is empty where it has not ended."""
     if not summary:
         return read_population(folder / CHECKPOINT)
     return dict(summary.get("population", {"entered": [], "gone": []}))

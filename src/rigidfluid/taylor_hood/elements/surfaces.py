@@ -135,6 +135,11 @@ class Surfaces:
             jump[images] -= ahead[images] * drop
         return jump
 
+    def unit_jump(self, surface: int) -> FloatArray:
+        """The `pressure_jump` (vertices,) of a unit drop from the first face of a pair on, by its surface number."""
+        first = [face.condition.surface for face in self.faces if face.condition.image is not None]
+        return -self._periods[: self.numbering.vertices, first.index(surface)].astype(float)
+
     def pressure_drops(self, pressure: FloatArray) -> FloatArray:
         """Mean drops of a ``pressure`` (vertices,) from the first to the second face of each periodic pair, (k,)."""
         ahead = self._periods[: len(pressure)]

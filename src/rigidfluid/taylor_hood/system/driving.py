@@ -81,10 +81,9 @@ def pressure_drop(surfaces: Surfaces, face: Face, pressure: FloatArray) -> float
 
 def _unit_drop(surfaces: Surfaces, face: Face, node_points: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Load (nodes, d) and pressure jump (vertices,) of a unit drop of pressure from a face on."""
-    load, jump = np.zeros_like(node_points), np.zeros(surfaces.numbering.vertices)
+    load = np.zeros_like(node_points)
     np.add.at(load, face.facet_nodes, face.area_vectors(node_points))
-    jump[face.nodes[face.nodes < len(jump)]] = 1.0
-    return load, jump
+    return load, surfaces.unit_jump(face.condition.surface)
 
 
 def _combined(

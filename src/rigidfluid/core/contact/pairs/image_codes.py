@@ -15,6 +15,6 @@ def image_codes(contacts: Contacts, lattice: Lattice) -> tuple[IntArray, int]:
     codes, count = np.zeros(len(contacts), dtype=np.int64), 1
     if contacts.shift is None:
         return codes, count
-    for along in np.rint(contacts.shift @ (lattice.vectors / lattice.lengths[:, None] ** 2).T).astype(np.int64).T:
+    for along in np.rint(lattice.components(contacts.shift)).astype(np.int64).T:
         codes, count = 8 * codes + along % 8, 8 * count
     return codes, count
