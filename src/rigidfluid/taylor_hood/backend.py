@@ -179,14 +179,15 @@ class TaylorHoodBackend(FluidBackend):
 
     @final
     def driving(self, fluid: FluidState, mesh: Mesh) -> FloatArray:
-        from rigidfluid.taylor_hood.system.driving import fluxes, pressure_drop
+        from rigidfluid.taylor_hood.system.driving import fluxes
 
         if all(condition.image is None for condition in self.problem.conditions):
             return np.zeros((0, 2))
         surfaces = self._any_discretisation(mesh).surfaces
-        faces = [face for face in surfaces.faces if face.condition.image is not None]
-        through = fluxes(surfaces, faces, self.numbering_of(mesh).node_points(mesh.geometry), fluid["velocity"])
-        return np.stack([through, [pressure_drop(surfaces, face, fluid["pressure"]) for face in faces]], axis=1)
+        through = fluxes(
+            surfaces, surfaces.first_faces, self.numbering_of(mesh).node_points(mesh.geometry), fluid["velocity"]
+        )
+        return np.stack([through, surfaces.pressure_drops(fluid["pressure"])], axis=1)
 
     @final
     def unknowns(self, mesh: Mesh, prescribed: BoolArray) -> int:

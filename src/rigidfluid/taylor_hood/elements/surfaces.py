@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 import scipy
@@ -124,20 +125,24 @@ class Surfaces:
             np.concatenate([values, values[found.col]]),
         )
 
+    @cached_property
+    def first_faces(self) -> list[Face]:
+        """The first face of each periodic pair, in the order of `pressure_drops`."""
+        return [face for face in self.faces if face.condition.image is not None]
+
     def pressure_jump(self, time: float, points: FloatArray) -> FloatArray:
         """Excess of the pressure at vertices (vertices, d) over that at the vertex that they are images of,
         (vertices,)."""
         jump = np.zeros(len(points))
-        pairs = [face.condition for face in self.faces if face.condition.image is not None]
-        for condition, ahead in zip(pairs, self._periods[: len(points)].T, strict=True):
+        for face, ahead in zip(self.first_faces, self._periods[: len(points)].T, strict=True):
             images = np.flatnonzero(ahead)
-            drop = condition.pressure(time, points[self.originals[images]])
+            drop = face.condition.pressure(time, points[self.originals[images]])
             jump[images] -= ahead[images] * drop
         return jump
 
     def unit_jump(self, surface: int) -> FloatArray:
         """The `pressure_jump` (vertices,) of a unit drop from the first face of a pair on, by its surface number."""
-        first = [face.condition.surface for face in self.faces if face.condition.image is not None]
+        first = [face.condition.surface for face in self.first_faces]
         return -self._periods[: self.numbering.vertices, first.index(surface)].astype(float)
 
     def pressure_drops(self, pressure: FloatArray) -> FloatArray:

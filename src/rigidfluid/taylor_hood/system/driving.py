@@ -49,12 +49,14 @@ def solve_driven(
         Relative residual of each solution [1].
     """
     surfaces, points = discretisation.surfaces, system.matrix.node_points
-    held = [(face, face.condition.held_flux) for face in surfaces.faces if face.condition.held_flux is not None]
+    first = surfaces.first_faces
+    held = [number for number, face in enumerate(first) if face.condition.held_flux is not None]
     if not held:
         return Driven(*solve_linked(discretisation, system, links, tolerance), np.zeros_like(system.load))
-    faces, wanted = [face for face, _ in held], np.array([flux(time) for _, flux in held])
+    faces = [first[number] for number in held]
+    wanted = np.array([face.condition.held_flux(time) for face in faces if face.condition.held_flux is not None])
     units = [_unit_drop(surfaces, face, points) for face in faces]
-    expected = np.array([pressure_drop(surfaces, face, system.pressure) for face in faces])
+    expected = surfaces.pressure_drops(system.pressure)[held]
     load, jump = _combined(units, expected, system)
     driven = replace(system, load=system.load + load, pressure_jump=system.pressure_jump + jump)
     solution, force = solve_linked(discretisation, driven, links, tolerance)
@@ -69,14 +71,6 @@ def solve_driven(
 def fluxes(surfaces: Surfaces, faces: Sequence[Face], node_points: FloatArray, velocity: FloatArray) -> FloatArray:
     """Fluxes ∫ u·n into the domain through ``faces`` (c,) of a ``velocity`` (nodes, d) [length^d/time]."""
     return np.asarray(surfaces.ranks.sum(np.array([face.inflow(node_points, velocity).sum() for face in faces])))
-
-
-def pressure_drop(surfaces: Surfaces, face: Face, pressure: FloatArray) -> float:
-    """Mean excess of a ``pressure`` (vertices,) on the first face of a periodic pair over that on its image."""
-    image = next(other for other in surfaces.faces if other.condition.surface == face.condition.image)
-    sums = [(pressure[each.facets].sum(), each.facets.size) for each in (face, image)]
-    (here, count), (there, there_count) = surfaces.ranks.sum(np.array(sums, dtype=float))
-    return float(here / count - there / there_count)
 
 
 def _unit_drop(surfaces: Surfaces, face: Face, node_points: FloatArray) -> tuple[FloatArray, FloatArray]:
