@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from rigidfluid.core.contact.pairs.gap_curvature import with_effective_radii
 from rigidfluid.core.contact.path.stretched import stretched
-from rigidfluid.core.contact.path.substep import relative_motion
+from rigidfluid.core.contact.path.substep import relative_angular_velocity, relative_motion, relative_velocity
 from rigidfluid.core.coupling.scheme import Scheme
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.interactions import acting_together
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import Contacts, Motion, Pose, Twist
 
 
 def contact_forces(system: System, scheme: Scheme, state: State, time: float) -> FloatArray:
@@ -25,3 +28,13 @@ def contact_forces(system: System, scheme: Scheme, state: State, time: float) ->
     if law.sticking:
         force += stretched(law, contacts, motion, state.pose, state.springs, 0.0).force
     return force
+
+
+def film_forces(system: System, contacts: Contacts, pose: Pose, twist: Twist) -> FloatArray:
+    """Force of the films that laws resist by, in ``contacts`` between bodies, on their first ones (m, d) [force]."""
+    films = acting_together([interaction for interaction in system.interactions if interaction.law.film])
+    if films is None:
+        return np.zeros((len(contacts), system.dimension))
+    curved = with_effective_radii(contacts, system.bodies, system.walls, pose)
+    spin = relative_angular_velocity(contacts, twist, None)
+    return films.damping(curved, Motion(relative_velocity(contacts, pose, twist), np.zeros(len(contacts)), spin))

@@ -83,8 +83,13 @@ class Statistics(NamedTuple):
             f"share in the largest group: {_told(contacts.largest)}",
         ]
         lines += [f"force on {name}: {_told(force)} [force]" for name, force in contacts.on_walls.items()]
-        if self.suspension is not None and self.suspension.relative_viscosity is not None:
-            lines.append(f"viscosity over that of the fluid: {_told(self.suspension.relative_viscosity)}")
+        if self.suspension is not None:
+            total, viscosity = self.suspension.by_cause["total"], self.suspension.relative_viscosity
+            unit = "force/area" if samples.dimension == 3 else "force/length"
+            lines.append(f"pressure of the bodies: {_told(total.pressure)} [{unit}]")
+            if viscosity is not None and total.differences is not None:
+                lines.append(f"viscosity over that of the fluid: {_told(viscosity)}")
+                lines.append(f"normal stress differences: {_told(total.differences)} [{unit}]")
         return [self.units.put_into(line) for line in lines]
 
 

@@ -17,6 +17,8 @@ from rigidfluid.post.reports.style import STYLE, save
 from rigidfluid.post.run_results import load_results
 from rigidfluid.post.statistics.blocks import mean
 from rigidfluid.post.statistics.contact_network import contact_network
+from rigidfluid.post.statistics.contact_rows import contact_rows
+from rigidfluid.post.statistics.contact_stresses import contact_stresses
 from rigidfluid.post.statistics.figures import Statistics
 from rigidfluid.post.statistics.motion import diffusion, mean_velocity, velocity_fluctuations
 from rigidfluid.post.statistics.pair_distribution import pair_distribution
@@ -58,10 +60,11 @@ def measured(
     if across not in list(results.axes):
         raise OutputError("--across", across, f"one of {', '.join(results.axes)}", "Name an axis.")
     samples = samples_of(results, since, until)
-    network, stresslets = contact_network(samples, tables["contacts"]), tables["stresslets"]
+    rows, stresslets = contact_rows(samples, tables["contacts"]), tables["stresslets"]
     stress = None
     if stresslets:
-        stress = suspension_stress(samples, results.system, stresslets, network.stress_by_state)
+        by_contacts = contact_stresses(results, rows.selected(rows.paired))
+        stress = suspension_stress(samples, results.system, stresslets, by_contacts)
     return Statistics(
         results.units,
         samples,
@@ -72,6 +75,6 @@ def measured(
         structure_factor(samples),
         diffusion(samples),
         profile(samples, results.axes.index(across)),
-        network,
+        contact_network(rows),
         stress,
     )

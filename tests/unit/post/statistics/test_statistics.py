@@ -5,21 +5,29 @@ from __future__ import annotations
 import json
 import tracemalloc
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from dry_scenes import ball, dry_scene
 
 import rigidfluid
+from rigidfluid.core.case.scene_model import model_of
+from rigidfluid.core.model.system import System
+from rigidfluid.core.setup.assemble import assemble
 from rigidfluid.errors import OutputError
+from rigidfluid.post.reports.results import read_results
 from rigidfluid.post.statistics import statistics
 from rigidfluid.post.statistics.blocks import mean
 from rigidfluid.post.statistics.contact_network import contact_network
+from rigidfluid.post.statistics.contact_rows import contact_rows
+from rigidfluid.post.statistics.contact_stresses import contact_stresses
 from rigidfluid.post.statistics.motion import diffusion, velocity_fluctuations
 from rigidfluid.post.statistics.pair_distribution import pair_distribution, shell_shares
 from rigidfluid.post.statistics.profiles import profile
-from rigidfluid.post.statistics.samples import Samples
+from rigidfluid.post.statistics.samples import Samples, samples_of
 from rigidfluid.post.statistics.structure_factor import structure_factor
+from rigidfluid.post.statistics.suspension_stress import suspension_stress
 
 
 def made(
@@ -94,7 +102,7 @@ def test_statistics_do_not_depend_on_the_period_in_which_a_body_is() -> None:
     for position, shift in ((place, -1.0), (there, 2.0), (middle, 0.0)):
         samples = made(position, velocity=np.ones_like(position), radius=0.03, period=1.0)
         on_b = position[:, 1] + [shift + 0.03, 0.0]
-        network = contact_network(samples, table | {"bx": on_b[:, 0], "by": on_b[:, 1]})
+        network = contact_network(contact_rows(samples, table | {"bx": on_b[:, 0], "by": on_b[:, 1]}))
         found.append((pair_distribution(samples).value.value, network.stress.value, profile(samples, 1).fraction.value))
         assert profile(samples, 0).fraction.value.sum() / 20.0 == pytest.approx(3.0 * np.pi * 0.03**2)
     np.testing.assert_allclose(found[0][1], [[-3.0 * 0.05, 0.0], [0.0, 0.0]], atol=1e-12)
@@ -158,7 +166,8 @@ def test_contacts_make_groups_and_press() -> None:
     rows = [("ball0", "ball1", -4.0, 0.0), ("ball1", "ball2", -4.0, 0.0), ("ball0", "left", 4.0, 0.0)]
     a, b, fx, fy = (np.array([row[column] for row in rows] * 8) for column in range(4))
     step = np.repeat(np.arange(8), 3)
-    found = contact_network(samples, {"step": step, "a": a, "b": b, "fx": fx, "fy": fy, "bx": 0.0 * fx, "by": 0.0 * fy})
+    table = {"step": step, "a": a, "b": b, "fx": fx, "fy": fy, "bx": 0.0 * fx, "by": 0.0 * fy}
+    found = contact_network(contact_rows(samples, table))
     assert found.coordination.value == pytest.approx(4 / 4)
     assert found.touching.value == pytest.approx(3 / 4)
     assert found.largest.value == pytest.approx(3 / 4)
@@ -203,6 +212,90 @@ def test_a_single_body_has_none(tmp_path: Path) -> None:
         statistics(tmp_path)
 
 
+def sheared(dimension: int, **more: Any) -> System:
+    """Two balls between walls across z, or in 2D y, that slide past each other at a rate of 2, in a fluid of viscosity
+    3."""
+    across = dimension - 1
+    faces = ("bottom", "top") if dimension == 2 else ("back", "front")
+    tables = {
+        "scene": {"name": "sheared", "dimension": dimension},
+        "fluid": {"model": "stokes", "density": 1.0, "viscosity": 3.0},
+        "domain": {"lower": [0.0] * dimension, "upper": [1.0] * dimension},
+        "boundary": [
+            {"on": face, "type": "wall", "velocity": [speed, *[0.0] * across]}
+            for face, speed in zip(faces, (-1.0, 1.0), strict=True)
+        ],
+        "body": [
+            {
+                "name": f"ball{n}",
+                "type": "sphere",
+                "radius": 0.1,
+                "density": 1.0,
+                "position": [0.3 + 0.3 * n] * dimension,
+            }
+            for n in range(2)
+        ],
+        "mesh": {"size": 0.2, "size_body": 0.05},
+        "time": {"end": 1.0, "step": 0.1},
+        "output": {"every": 1.0},
+    }
+    return assemble(model_of(rigidfluid.scene_from_dict(tables | more)))
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_stresses_differ_along_the_flow_across_it_and_along_the_vorticity(dimension: int) -> None:
+    """With the walls across z the directions of flow, gradient and vorticity are x, z and y."""
+    random = np.random.default_rng(5)
+    samples = made(random.random((32, 2, dimension)))
+    single = random.normal(size=(64, dimension, dimension))
+    single = single + single.swapaxes(1, 2)
+    rows, columns = np.triu_indices(dimension)
+    table = {"step": np.repeat(samples.step, 2), "body": np.array(["ball0", "ball1"] * 32)} | {
+        f"s{'xyz'[row]}{'xyz'[column]}": single[:, row, column] for row, column in zip(rows, columns, strict=True)
+    }
+    by_fluid = single.reshape(32, 2, dimension, dimension).sum(axis=1)
+    by_contacts = random.normal(size=(32, dimension, dimension))
+    found = suspension_stress(samples, sheared(dimension), table, {"contacts": by_contacts})
+    assert found is not None
+    assert found.relative_viscosity is not None
+    assert found.shear_rate == pytest.approx(2.0)
+    last = dimension - 1
+    for cause, stress in {"fluid": by_fluid, "contacts": by_contacts, "total": by_fluid + by_contacts}.items():
+        figures = found.by_cause[cause]
+        assert figures.differences is not None
+        differences = [stress[:, 0, 0] - stress[:, last, last], stress[:, last, last] - stress[:, 1, 1]]
+        known = mean(np.stack(differences[:last], axis=1))
+        np.testing.assert_allclose(figures.differences.value, known.value, atol=1e-12)
+        np.testing.assert_allclose(figures.differences.error, known.error, rtol=1e-9)
+        assert figures.pressure.value == pytest.approx(-np.trace(stress.mean(axis=0)) / dimension)
+    shearing = 0.5 * (by_contacts[:, 0, last] + by_contacts[:, last, 0]) + by_fluid[:, 0, last]
+    assert found.relative_viscosity.value == pytest.approx(1.0 + shearing.mean() / 6.0)
+    assert found.relative_viscosity.error == pytest.approx(mean(shearing / 6.0).error)
+
+
+@pytest.mark.parametrize("sliding", [False, True])
+def test_what_a_film_resists_is_apart_from_what_its_contact_repels(tmp_path: Path, sliding: bool) -> None:
+    """Of the stress of the law that repels and the film's, the first alone follows from the gaps."""
+    repelling = {"law": "spring-dashpot", "range": 0.1, "stiffness": 50.0}
+    film = {"law": "lubrication", "range": 0.1, "viscosity": 0.2, "cutoff": 0.01, "sliding": sliding}
+    balls = [ball([0.35, 0.5], [0.5, 0.3]), ball([0.62, 0.55], [-0.5, 0.0]), ball([0.4, 0.8], [0.0, -0.4])]
+    scene = dry_scene(repelling, *balls, end=0.3, step=5e-3)
+    tables = scene.model_dump(mode="json", exclude_none=True)
+    del tables["contact"]
+    tables["interaction"] = [repelling, film]
+    run = rigidfluid.run(rigidfluid.scene_from_dict(tables), tmp_path)
+    results = read_results(tmp_path, motion_only=True)
+    samples = samples_of(results, 0.005, None)
+    rows = contact_rows(samples, run.table("contacts"))
+    pairs = rows.selected(rows.paired)
+    assert len(pairs.state) > 10
+    found = contact_stresses(results, pairs)
+    assert found.keys() == {"contacts", "lubrication"}
+    repelled = 50.0 * (0.1 - pairs.columns["gap"])[:, None] * pairs.vectors("n")
+    np.testing.assert_allclose(found["contacts"], pairs.stress(repelled), rtol=1e-6, atol=1e-6)
+    assert np.abs(found["lubrication"]).max() > 0.01
+
+
 @pytest.mark.long
 def test_the_viscosity_of_a_sheared_suspension_is_what_its_walls_feel(tmp_path: Path) -> None:
     """Two free disks between walls that slide, in Stokes flow: by stresslets, and by the walls' power."""
@@ -235,5 +328,6 @@ def test_the_viscosity_of_a_sheared_suspension_is_what_its_walls_feel(tmp_path: 
     assert found.suspension.relative_viscosity.value == pytest.approx(power / (2.0 * 144.0), rel=1e-4)
     assert found.suspension.relative_viscosity.value > 1.04
     told = json.loads((tmp_path / "statistics.json").read_text())["suspension_stress"]
-    assert told["fluid"][0][0][1] == pytest.approx(2.0 * (told["relative_viscosity"][0] - 1.0), rel=1e-6)
+    assert told["fluid"]["stress"][0][0][1] == pytest.approx(2.0 * (told["relative_viscosity"][0] - 1.0), rel=1e-6)
+    assert told["fluid"]["viscosity"][0] == pytest.approx(told["relative_viscosity"][0] - 1.0, rel=1e-12)
     assert any(line.startswith("viscosity over that of the fluid: 1.") for line in found.lines)
