@@ -200,8 +200,9 @@ def report(folder: Folder, plane: Plane = "motion", follow: Looked = None) -> No
     """Make plots and a page from the results in a folder."""
     with reported():
         from rigidfluid.post.reports import report as make_report
+        from rigidfluid.post.statistics import section
 
-        for path in make_report(folder, plane, follow):
+        for path in make_report(folder, plane, follow, sections=(section,)):
             tell(f"wrote {path}")
 
 

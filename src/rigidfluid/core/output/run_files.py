@@ -9,7 +9,7 @@ from rigidfluid.core.output.results_folder import Product
 PICTURES = (
     *("speed_field", "streamlines", "vorticity", "pressure", "whole_mesh", "mesh", "smallest_gap", "space", "position"),
     *("mechanisms", "speed", "gap", "rotation", "torque", "force", "coefficients", "contacts", "joints", "energy"),
-    "step",
+    *("step", "statistics"),
 )
 """Names of the pictures in the report of a run, each a PNG or SVG file."""
 

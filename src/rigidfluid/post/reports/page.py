@@ -55,9 +55,10 @@ def page(
     pictures: Sequence[str],
     notes: Iterable[str],
     coefficients: Sequence[tuple[str, Figures]],
+    others: Iterable[str],
 ) -> str:
-    """Compose the HTML page from results, names and content of files next to it, embedded pictures, notes, and
-    coefficients by body."""
+    """Compose the HTML page from results, names and content of files next to it, embedded pictures, notes, coefficients
+    by body, and ``others``, which are HTML."""
     summary, scene = results.summary, results.model.document
     told = (f"{grade.capitalize()}: {text}" for grade, text in verdict(summary)) if summary else ()
     measured = [
@@ -66,6 +67,7 @@ def page(
         *([table(_figures(summary)), *_cycles(summary.get("cycles", {}))] if summary else ()),
         *_changes(results),
         *_coefficients(coefficients),
+        *others,
         "<h2>Pictures</h2>",
         *pictures,
         *(_balance_and_cost(summary) if summary else ()),

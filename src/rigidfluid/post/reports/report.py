@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import chain
 from pathlib import Path
+from typing import NamedTuple
 
 import matplotlib
 import numpy as np
@@ -48,13 +50,26 @@ from rigidfluid.post.reports.view_plane import PlaneName, ViewPlane, view_plane
 FOLDER, PAGE = "report", "report.html"
 
 
-def report(out: Path, plane: PlaneName = "motion", follow: str | None = None, model: Model | None = None) -> list[Path]:
+class Section(NamedTuple):
+    """A section of the page: its ``parts``, which are HTML, and its pictures, which are shown with the others."""
+
+    parts: Sequence[str] = ()
+    pictures: Sequence[Picture] = ()
+
+
+def report(
+    out: Path,
+    plane: PlaneName = "motion",
+    follow: str | None = None,
+    model: Model | None = None,
+    sections: Iterable[Callable[[Results], Section]] = (),
+) -> list[Path]:
     """Make plots and one page from the results in a folder; return the files written, last ``report.html``.
 
-    Pictures of a 3D run show the ``plane`` that `view_plane` takes; they ``follow`` a body by name, else that with the
-    least gap. A run of a model made in Python wants the ``model``. Raises OutputError for missing or unreadable
-    results, an unknown body or plane, or a disk that refuses; SceneError or PluginError if the run's scene cannot be
-    built here, as without one of its plug-ins.
+    The page also has the ``sections`` that others make of the results. Pictures of a 3D run show the ``plane`` that
+    `view_plane` takes; they ``follow`` a body by name, else that with the least gap. A run of a model made in Python
+    wants the ``model``. Raises OutputError for missing or unreadable results, an unknown body or plane, or a disk that
+    refuses; SceneError or PluginError if the run's scene cannot be built here, as without one of its plug-ins.
     """
     out = Path(out)
     results = read_results(out, model=model)
@@ -62,14 +77,16 @@ def report(out: Path, plane: PlaneName = "motion", follow: str | None = None, mo
     seen = view_plane(results, plane)
     body = None if follow is None else results.number_of(follow)
     with matplotlib.rc_context(STYLE), writing(out / FOLDER):
+        others = [make(results) for make in sections]
         (out / FOLDER).mkdir(exist_ok=True)
         units = results.units
         named = (
             (name, units.put_into(caption), units.put_into_labels(figure), kinds)
-            for name, caption, figure, kinds in _pictures(results, seen, body)
+            for name, caption, figure, kinds in chain(_pictures(results, seen, body), *(one.pictures for one in others))
         )
         written, shown = save_pictures(named, out / FOLDER)
-        replace_file(out / PAGE, page(results, _data(out), shown, _notes(results), _figures(results)).encode())
+        parts = [part for one in others for part in one.parts]
+        replace_file(out / PAGE, page(results, _data(out), shown, _notes(results), _figures(results), parts).encode())
     return [*written, out / PAGE]
 
 

@@ -45,7 +45,7 @@ class Results:
     by column (s, j), no columns without any; ``energy`` by column (s,); ``series`` the times and files of the fields,
     empty without a fluid. ``wholes`` of mechanisms by column (s, mechanisms). ``contact_counts`` (s,): how many
     contacts there are within the range of the laws. ``written``: when its latest row was [s since 1970]. ``goes_on``:
-    whether a process is writing there.
+    whether a process is writing there, in the ``folder``.
     """
 
     summary: dict[str, Any]
@@ -60,6 +60,7 @@ class Results:
     contact_counts: FloatArray = field(default_factory=lambda: np.zeros(0))
     written: float = 0.0
     goes_on: bool = False
+    folder: Path = Path()
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -158,6 +159,7 @@ def read_results(folder: Path, *, motion_only: bool = False, model: Model | None
         series=series,
         wholes={name: values[:, count:] for name, values in by_state.items()},
         goes_on=is_being_written(folder, RUN),
+        folder=folder,
         written=table_path(folder, "bodies").stat().st_mtime,
         contact_counts=np.zeros(0) if motion_only else _contact_counts(folder, model.dimension, steps),
     )

@@ -34,6 +34,11 @@ class Units:
         """Names in a scene's tables."""
         return cls(document["scene"].get("units"), document["scene"]["dimension"])
 
+    @property
+    def pressure(self) -> str:
+        """Quantity of a pressure, in 2D a force over a length."""
+        return "force/area" if self.dimension == 3 else "force/length"
+
     def put_into(self, text: str) -> str:
         """A text in which names stand for quantities in brackets: "[cm/s]" for "[length/time]"."""
         return text if self.names is None else re.sub(r"\[([\w·/]+)\]", self._named, text)

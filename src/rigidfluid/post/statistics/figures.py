@@ -75,25 +75,25 @@ class Statistics(NamedTuple):
         lines = [
             f"{samples.count} bodies, {samples.fraction:.3g} of the volume",
             f"{len(samples.time)} states from {samples.time[0]:.4g} to {samples.time[-1]:.4g} [time]",
-            f"gap to the nearest surface: {_told(self.gap)} [length]",
-            f"velocity: {_told(self.velocity)} [length/time]",
-            f"fluctuations of velocity: {_told(self.fluctuations)} [length/time]",
-            f"bodies that touch a body: {_told(contacts.coordination)}",
-            f"share with a contact: {_told(contacts.touching)}",
-            f"share in the largest group: {_told(contacts.largest)}",
+            f"gap to the nearest surface: {told(self.gap)} [length]",
+            f"velocity: {told(self.velocity)} [length/time]",
+            f"fluctuations of velocity: {told(self.fluctuations)} [length/time]",
+            f"bodies that touch a body: {told(contacts.coordination)}",
+            f"share with a contact: {told(contacts.touching)}",
+            f"share in the largest group: {told(contacts.largest)}",
         ]
-        lines += [f"force on {name}: {_told(force)} [force]" for name, force in contacts.on_walls.items()]
+        lines += [f"force on {name}: {told(force)} [force]" for name, force in contacts.on_walls.items()]
         if self.suspension is not None:
             total, viscosity = self.suspension.by_cause["total"], self.suspension.relative_viscosity
-            unit = "force/area" if samples.dimension == 3 else "force/length"
-            lines.append(f"pressure of the bodies: {_told(total.pressure)} [{unit}]")
+            unit = self.units.pressure
+            lines.append(f"pressure of the bodies: {told(total.pressure)} [{unit}]")
             if viscosity is not None and total.differences is not None:
-                lines.append(f"viscosity over that of the fluid: {_told(viscosity)}")
-                lines.append(f"normal stress differences: {_told(total.differences)} [{unit}]")
+                lines.append(f"viscosity over that of the fluid: {told(viscosity)}")
+                lines.append(f"normal stress differences: {told(total.differences)} [{unit}]")
         return [self.units.put_into(line) for line in lines]
 
 
-def _told(values: Mean) -> str:
+def told(values: Mean) -> str:
     """Value and error in words."""
     value, error = np.atleast_1d(values.value), np.atleast_1d(values.error)
     told = [f"{v:.3g}" + (f" ± {e:.1g}" if np.isfinite(e) else "") for v, e in zip(value, error, strict=True)]

@@ -24,7 +24,7 @@ from rigidfluid.post.statistics.motion import diffusion, mean_velocity, velocity
 from rigidfluid.post.statistics.pair_distribution import pair_distribution
 from rigidfluid.post.statistics.plot import statistics_plot
 from rigidfluid.post.statistics.profiles import profile
-from rigidfluid.post.statistics.samples import samples_of
+from rigidfluid.post.statistics.samples import SAMPLES, samples_of
 from rigidfluid.post.statistics.structure_factor import structure_factor
 from rigidfluid.post.statistics.suspension_stress import suspension_stress
 
@@ -38,8 +38,7 @@ def statistics(
     ``across`` an axis. Raises OutputError for a folder that cannot be read, and for too few bodies or states.
     """
     results = read_results(folder, motion_only=True)
-    tables = {name: _table(Path(folder), name) for name in ("contacts", "stresslets")}
-    found = measured(results, tables, since, until, across)
+    found = measured(results, tables_of(Path(folder)), since, until, across)
     figures = Path(folder) / "statistics.json"
     with matplotlib.rc_context(STYLE), writing(figures):
         text = json.dumps(found.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
@@ -48,18 +47,24 @@ def statistics(
     return found, [figures, *plots]
 
 
-def _table(folder: Path, name: str) -> dict[str, Any]:
-    """A table of a run; nothing of one that an earlier version has not written."""
-    return load_results(folder).table(name) if name == "contacts" or table_path(folder, name).exists() else {}
+def tables_of(folder: Path) -> dict[str, dict[str, Any]]:
+    """Tables of contacts and stresslets of a run; nothing of one that an earlier version has not written."""
+    run, names = load_results(folder), ("contacts", "stresslets")
+    return {name: run.table(name) if name == names[0] or table_path(folder, name).exists() else {} for name in names}
 
 
 def measured(
-    results: Results, tables: Mapping[str, dict[str, Any]], since: float | None, until: float | None, across: str
+    results: Results,
+    tables: Mapping[str, dict[str, Any]],
+    since: float | None = None,
+    until: float | None = None,
+    across: str = "y",
+    most: int = SAMPLES,
 ) -> Statistics:
-    """Statistics of these results, with their ``tables`` of contacts and stresslets."""
+    """Statistics of these results, with their ``tables`` of contacts and stresslets, in at most so many states."""
     if across not in list(results.axes):
         raise OutputError("--across", across, f"one of {', '.join(results.axes)}", "Name an axis.")
-    samples = samples_of(results, since, until)
+    samples = samples_of(results, since, until, most)
     rows, stresslets = contact_rows(samples, tables["contacts"]), tables["stresslets"]
     stress = None
     if stresslets:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.post.reports.style import BLUE, PALETTE, new_figure
@@ -39,6 +40,7 @@ def _draw_mean(axes: Axes, places: FloatArray, values: Mean) -> None:
 def _draw_displacement(axes: Axes, found: Statistics) -> None:
     for name, curve, colour in zip("xyz", found.diffusion.displacement.T, PALETTE, strict=False):
         axes.loglog(found.diffusion.lag, np.maximum(curve, np.finfo(float).tiny), color=colour, label=name)
+    axes.xaxis.set_minor_formatter(NullFormatter())
     axes.set(xlabel="lag [time]", ylabel="mean square displacement [area]")
     axes.legend()
 

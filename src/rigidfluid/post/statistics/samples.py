@@ -85,8 +85,9 @@ class Samples:
         return float(self.body_volume.sum() / self.volume)
 
 
-def samples_of(results: Results, since: float | None, until: float | None) -> Samples:
-    """Samples of a run from one time to another; from a third of it on if not given, when most starts are forgotten.
+def samples_of(results: Results, since: float | None, until: float | None, most: int = SAMPLES) -> Samples:
+    """Samples of a run from one time to another, at ``most`` so many; from a third of it on if not given, when most
+    starts are forgotten.
 
     Raises OutputError if there are too few states or bodies, or a body enters or leaves meanwhile.
     """
@@ -96,7 +97,7 @@ def samples_of(results: Results, since: float | None, until: float | None) -> Sa
         allowed, remedy = f"two times from {start:g} to {end:g}, in order", "Correct --since or --until."
         raise OutputError("statistics, times", f"{since:g} to {until:g}", allowed, remedy)
     inside = int(np.sum((results.time >= since) & (results.time <= until)))
-    wanted = np.linspace(since, min(until, end), max(LEAST, min(SAMPLES, inside)))
+    wanted = np.linspace(since, min(until, end), max(LEAST, min(SAMPLES, most, inside)))
     rows = np.unique([results.state_at(time) for time in wanted])
     present = results.present[rows[0] : rows[-1] + 1]
     moving = np.flatnonzero(~results.system.prescribed & present.any(axis=0))

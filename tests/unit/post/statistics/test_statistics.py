@@ -12,10 +12,12 @@ import pytest
 from dry_scenes import ball, dry_scene
 
 import rigidfluid
+from rigidfluid.api import Simulation
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.model.system import System
 from rigidfluid.core.setup.assemble import assemble
 from rigidfluid.errors import OutputError
+from rigidfluid.post.reports import report
 from rigidfluid.post.reports.results import read_results
 from rigidfluid.post.statistics import statistics
 from rigidfluid.post.statistics.blocks import mean
@@ -26,8 +28,9 @@ from rigidfluid.post.statistics.motion import diffusion, velocity_fluctuations
 from rigidfluid.post.statistics.pair_distribution import pair_distribution, shell_shares
 from rigidfluid.post.statistics.profiles import profile
 from rigidfluid.post.statistics.samples import Samples, samples_of
+from rigidfluid.post.statistics.section import _stresses, section
 from rigidfluid.post.statistics.structure_factor import structure_factor
-from rigidfluid.post.statistics.suspension_stress import suspension_stress
+from rigidfluid.post.statistics.suspension_stress import StressFigures, SuspensionStress, suspension_stress
 
 
 def made(
@@ -196,6 +199,42 @@ def test_of_a_run_they_are_written_beside_its_results(tmp_path: Path) -> None:
     ):
         with pytest.raises(OutputError, match=told):
             statistics(tmp_path, **keys)  # type: ignore[arg-type]
+
+
+def test_the_report_of_many_bodies_has_statistics_and_that_of_few_has_none(tmp_path: Path) -> None:
+    law = {"law": "spring-dashpot", "range": 0.02, "stiffness": 2000.0}
+    balls = [ball([0.17 + 0.3 * (n % 3), 0.2 + 0.3 * (n // 3)], [1.0 - 0.3 * n, 0.4 * n - 1.0]) for n in range(8)]
+    pages = []
+    for count in (7, 8):
+        folder = tmp_path / str(count)
+        rigidfluid.run(dry_scene(law, *balls[:count], end=0.1, step=5e-3), folder)
+        written = report(folder, sections=(section,))
+        pages.append((folder / "report.html").read_text())
+        assert ("statistics.png" in {path.name for path in written}) == (count == 8)
+    assert "Statistics" not in pages[0]
+    assert ">Statistics</a>" in pages[1]
+    assert "<li>share with a contact: " in pages[1]
+
+
+def test_the_report_says_why_a_run_has_no_statistics(tmp_path: Path) -> None:
+    balls = [ball([0.17 + 0.3 * (n % 3), 0.2 + 0.3 * (n // 3)], [0.0, 0.0]) for n in range(8)]
+    run = Simulation(dry_scene({}, *balls, end=0.06, step=1e-2), tmp_path)
+    run.go(0.04)
+    run.remove("body3")
+    run.go()
+    run.finish("complete")
+    run.close()
+    report(tmp_path, sections=(section,))
+    assert (
+        "None: statistics: found from 0.02 to 0.06 bodies that enter or leave: body3"
+        in (tmp_path / "report.html").read_text()
+    )
+
+
+def test_the_stress_of_each_cause_is_in_a_table() -> None:
+    figures = StressFigures(mean(np.eye(2)[None]), mean(np.array([3.0])), mean(np.array([[0.5]])), None)
+    found = _stresses(SuspensionStress({"fluid": figures}, None, None), "force/length")
+    assert '<td class="n">fluid</td><td class="n">3</td><td class="n"></td><td class="n">0.5</td>' in found
 
 
 def test_gaps_are_those_of_bodies_with_something_near() -> None:
