@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.spatial.distance import pdist
+from scipy.spatial import cKDTree
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.post.statistics.blocks import Mean, mean
@@ -35,22 +35,18 @@ def pair_distribution(samples: Samples) -> PairDistribution:
     edges = np.linspace(0.0, max(0.5 * sides.min(), 4.0 * samples.radius.mean()), BINS + 1)
     pairs = 0.5 * samples.count * (samples.count - 1)
     expected = pairs * shell_shares(edges, sides, samples.periodic)
-    counted = np.array([np.histogram(_distances(samples, position), edges)[0] for position in samples.position])
+    counted = np.array([_counts(samples, position, edges) for position in samples.position])
     ratio = np.divide(counted, expected, out=np.zeros(counted.shape), where=expected > 0.0)
     return PairDistribution(0.5 * (edges[1:] + edges[:-1]), mean(ratio))
 
 
-def _distances(samples: Samples, position: FloatArray) -> FloatArray:
-    """Distances of all pairs of places (n, d), of nearest images along periods, (n(n-1)/2,) [length]."""
-    if not samples.periodic.any():
-        return np.asarray(pdist(position))
-    square = np.zeros(len(position) * (len(position) - 1) // 2)
-    for axis, periodic in enumerate(samples.periodic):
-        apart = pdist(position[:, axis : axis + 1])
-        if periodic:
-            apart -= samples.period[axis] * np.rint(apart / samples.period[axis])
-        square += apart**2
-    return np.sqrt(square)
+def _counts(samples: Samples, position: FloatArray, edges: FloatArray) -> FloatArray:
+    """Pairs of places (n, d) between two ``edges`` apart, by nearest images along periods, (b,) [1]."""
+    sides = np.where(samples.periodic, samples.period, 0.0)
+    inside = position - samples.lower
+    inside -= sides * np.floor(inside / np.where(samples.periodic, sides, 1.0))
+    tree = cKDTree(np.where((inside < sides) | ~samples.periodic, inside, 0.0), boxsize=sides)
+    return np.asarray(0.5 * np.diff(tree.count_neighbors(tree, edges)))
 
 
 def shell_shares(edges: FloatArray, sides: FloatArray, periodic: BoolArray) -> FloatArray:

@@ -114,6 +114,31 @@ def test_statistics_do_not_depend_on_the_period_in_which_a_body_is() -> None:
             np.testing.assert_allclose(one, same, rtol=0, atol=1e-9)
 
 
+@pytest.mark.parametrize("period", [np.inf, 1.0])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_pairs_are_counted_as_one_by_one(dimension: int, period: float) -> None:
+    place = 5.0 * np.random.default_rng(11).random((3, 40, dimension)) - 2.0
+    if np.isinf(period):
+        place = np.mod(place, 1.0)
+    samples = made(place, period=period)
+    found = pair_distribution(samples)
+    edges = np.linspace(0.0, 0.49, 61)
+    apart = place[:, :, None] - place[:, None]
+    apart = np.linalg.norm(apart - samples.periods(apart), axis=-1)[:, *np.triu_indices(40, 1)]
+    counted = np.array([np.histogram(one, edges)[0] for one in apart]).mean(axis=0)
+    sides = np.where(samples.periodic, 1.0, 0.98)
+    np.testing.assert_allclose(found.value.value * 780.0 * shell_shares(edges, sides, samples.periodic), counted)
+
+
+def test_pairs_of_thousands_of_bodies_take_little_memory() -> None:
+    position = np.random.default_rng(1).random((1, 6000, 3))
+    tracemalloc.start()
+    pair_distribution(made(position))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 5e7
+
+
 def test_a_lattice_scatters_waves_of_its_spacing_alone() -> None:
     grid = (np.stack(np.meshgrid(np.arange(5), np.arange(5)), axis=-1).reshape(1, -1, 2) + 0.5) / 5.0
     waves = structure_factor(made(np.repeat(grid, 2, axis=0)))
