@@ -28,11 +28,13 @@ from rigidfluid.checks.run_size import run_size
 from rigidfluid.checks.run_time import dry_run_time_findings, run_time_findings
 from rigidfluid.checks.separation import law_findings, open_face_findings, strength_findings
 from rigidfluid.checks.shapes import facet_findings
+from rigidfluid.checks.sources import source_findings, with_first_bodies
 from rigidfluid.checks.static_load import rest_findings, stack_findings
 from rigidfluid.checks.stepping import step_findings
 from rigidfluid.checks.swarms import swarm_findings
 from rigidfluid.checks.tolerance import tolerance_findings
 from rigidfluid.checks.units import unit_findings
+from rigidfluid.core.case.population import assemble_ever
 from rigidfluid.core.case.scene_model import Case, model_of
 from rigidfluid.core.contact.laws.spot_check import spot_check
 from rigidfluid.core.geometry.arrays import FloatArray
@@ -98,30 +100,42 @@ def check(case: Case) -> Report:
     with no_exit(), told_memory():
         model = model_of(case)
         system = assemble(model)
+        judged = with_first_bodies(model)
+        whole = assemble_ever(judged) if model.source_tables else system
         start = initial_contacts(model, system.pose, gap_reach(system))
         spot_check(system, system.pose, None, 0)
-        found = sorted(findings(model, system, start), key=lambda finding: GRADES.index(finding.grade))
+        answers = chain(findings(judged, whole), _findings_at_start(model, system, start))
+        found = sorted(answers, key=lambda finding: GRADES.index(finding.grade))
         rows = (
             tuple(features(system, model.fluid.mesh, len(model.source_tables), len(model.sink_tables))),
             tuple(_rows(system, start)),
         )
-        pairs = tuple(pair_rows(system, model.fluid.mesh))
+        pairs = tuple(pair_rows(whole, model.fluid.mesh))
         return Report(model.name, domain_row(model), *rows, pairs, tuple(found))
 
 
-def findings(model: Model, system: System, start: Contacts) -> Iterator[Finding]:
-    """The answers to all questions, in the order in which they are asked."""
+def _findings_at_start(model: Model, system: System, start: Contacts) -> Iterator[Finding]:
+    """The answers to questions about bodies where they start."""
+    mesh = model.fluid.mesh
+    size = None if mesh is None else run_size(model, system, mesh)
+    if size is not None:
+        yield from chain(memory_findings(size), run_time_findings(size, system, model.time))
+    for interaction in system.interactions:
+        yield from start_findings(system, interaction, start)
+
+
+def findings(model: Model, system: System) -> Iterator[Finding]:
+    """The answers to all questions about bodies wherever they are, in the order in which they are asked."""
     mesh, time = model.fluid.mesh, model.time
-    yield from chain(law_findings(system), open_face_findings(system), strength_findings(system))
+    ends = {sink.on for sink in model.sink_tables}
+    yield from chain(law_findings(system), open_face_findings(system, ends), strength_findings(system))
     yield from chain(overridden_findings(model.boundary_tables, model.domain), swarm_findings(model.swarm_tables))
+    yield from source_findings(model)
     yield from chain(unit_findings(model, system), tolerance_findings(time), facet_findings(system))
     yield from chain(joint_findings(model, system), mechanism_findings(model, system))
     if system.fluid is None:
         yield from dry_run_time_findings(system, time)
     if mesh is not None:
-        size = run_size(model, system, mesh)
-        if size is not None:
-            yield from chain(memory_findings(size), run_time_findings(size, system, time))
         yield from chain(layer_findings(system, mesh), film_findings(system, mesh))
     for design in design_contacts(system):
         yield from chain(rest_findings(design), stack_findings(design))
@@ -133,7 +147,6 @@ def findings(model: Model, system: System, start: Contacts) -> Iterator[Finding]
         if mesh is not None and system.loads.film is not None:
             yield from rebound_findings(design, system.loads.film, mesh)
     for interaction in system.interactions:
-        yield from start_findings(system, interaction, start)
         yield from chain(parallel_wall_findings(system, interaction), range_findings(system, interaction, mesh))
 
 

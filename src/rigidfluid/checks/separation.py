@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 
 import numpy as np
 
@@ -43,13 +43,14 @@ def _lawless_findings(system: System) -> Iterator[Finding]:
             yield Finding("warning", "law", names, text, remedy, {"pairs": len(design.contacts)})
 
 
-def open_face_findings(system: System) -> Iterator[Finding]:
-    """Find surfaces that a weight drives bodies to but that are no walls, and do not repel; a warning for each."""
+def open_face_findings(system: System, ends: Container[str | None] = ()) -> Iterator[Finding]:
+    """Find surfaces that a weight drives bodies to but that are no walls, and do not repel; a warning for each that is
+    not at one of the ``ends``, where bodies leave."""
     solid = {wall.name for wall in system.walls}
     for piece in system.domain.pieces:
         name, moving = piece.name, (kind[0] for kind in body_classes(system) if free(system, kind))
         driven = [body for body in moving if _drives(system, body, piece.shape)]
-        if driven and name not in solid:
+        if driven and name not in solid and name not in ends:
             text = f"{system.surfaces[driven[0]]} is driven to {name}, which is no wall and does not repel"
             remedy = "End before it gets there, or make that surface a wall."
             yield Finding("warning", "open-face", (system.surfaces[driven[0]], name), text, remedy)

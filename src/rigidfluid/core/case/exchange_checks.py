@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from rigidfluid.core.case.population_due import seeded_body
-from rigidfluid.core.model.types import Pose
+from rigidfluid.core.case.population_due import body_alone
 from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.exchange_tables import SinkTable, SourceTable
 from rigidfluid.core.seeding.draws import Draws
-from rigidfluid.core.seeding.placement import Others
-from rigidfluid.core.seeding.regions import region_of
+from rigidfluid.core.seeding.placement import refuse_outside
+from rigidfluid.core.seeding.regions import DomainRegion, region_of
 from rigidfluid.core.seeding.swarm import swarm_of
 from rigidfluid.core.setup.changeable import require_changeable
 from rigidfluid.core.setup.model import Model
@@ -43,11 +40,9 @@ def _check_source(table: SourceTable, number: int, model: Model) -> None:
     if alike:
         allowed = f"a name whose numbers, as {table.name}0, nobody else has: there is {alike[0]!r}"
         raise SceneError(f"{at}.name", repr(table.name), allowed, "Choose another name.")
-    dimension = model.dimension
-    nobody = Others((), Pose(np.zeros((0, dimension)), np.zeros((0, 1 if dimension == 2 else 4))))
-    seeded_body(model, number, 0, nobody)
+    body_alone(model, number, 0)
     if model.names_detector:
-        shapes = swarm_of(table.swarm(0), at, dimension, Draws(model.seed), model.registry).shapes
+        shapes = swarm_of(table.swarm(0), at, model.dimension, Draws(model.seed), model.registry).shapes
         model.detection[0].part(model.detection[0].options, (*model.shapes, *shapes), model.walls)
 
 
@@ -58,7 +53,8 @@ def _check_sink(table: SinkTable, at: str, model: Model) -> None:
     if table.region is not None:
         if table.gap is not None:
             raise SceneError(f"{at}.gap", "gap together with region", "gap with on", "Leave it out.")
-        region_of(table.region, model.domain, f"{at}.region", model.registry)
+        region = region_of(table.region, model.domain, f"{at}.region", model.registry)
+        refuse_outside(region, DomainRegion(model.domain), f"{at}.region", Draws(model.seed))
     elif table.on not in model.domain.names:
         raise SceneError(
             f"{at}.on", repr(table.on), f"a surface: {', '.join(model.domain.names)}", "Name one of these."

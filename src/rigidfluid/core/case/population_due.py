@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import product
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -62,12 +62,11 @@ def _after_source(now: Moment, number: int, population: Population, others: Othe
     source = now.model.source_tables[number]
     for count in missing(source, population, now.time):
         try:
-            found = seeded_body(now.model, number, count, others)
+            found = _seeded(now.model, number, count, others)
         except SceneError:
-            seeded_body(now.model, number, count, others.none)  # without room even alone it would wait for ever
+            body_alone(now.model, number, count)  # without room even alone it would wait for ever
             break
-        entering = {**found.tables[0], "name": f"{source.name}{count}"}
-        population, others = population.with_body(entering), found.bodies
+        population, others = population.with_body(_named(found, source, count)), found.bodies
     return population, others
 
 
@@ -77,9 +76,18 @@ def missing(source: SourceTable, population: Population, time: float) -> list[in
     return [count for count in range(source.due(time)) if f"{source.name}{count}" not in known]
 
 
-def seeded_body(model: Model, number: int, count: int, others: Others) -> Seeded:
-    """The body of that ``count`` from a source among others; raises SceneError or PluginError where its table is wrong
-    or it has no room."""
+def body_alone(model: Model, number: int, count: int) -> Mapping[str, Any]:
+    """Table of the body of that ``count`` from a source, where nobody else is; raises SceneError or PluginError where
+    the source is wrong or the body has no room."""
+    nobody = Others((), Pose(np.zeros((0, model.dimension)), np.zeros((0, 1 if model.dimension == 2 else 4))))
+    return _named(_seeded(model, number, count, nobody), model.source_tables[number], count)
+
+
+def _named(found: Seeded, source: SourceTable, count: int) -> Mapping[str, Any]:
+    return {**found.tables[0], "name": f"{source.name}{count}"}
+
+
+def _seeded(model: Model, number: int, count: int, others: Others) -> Seeded:
     draws, occupied = Draws(model.seed, _SOURCES + number, count), Occupied(model.domain, others, model.registry)
     return seed(model.source_tables[number].swarm(count), f"source.{number}", draws, occupied, grow=False)
 

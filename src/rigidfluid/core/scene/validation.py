@@ -270,8 +270,16 @@ def _misspelt_key(field: str, table: Mapping[str, Any], key: str, known: Iterabl
     return unknown_key(f"{field}.{wrong[0]}" if field else wrong[0], known) if wrong else None
 
 
+_LENGTHS = {"too_short": ("at least", "min_length"), "too_long": ("at most", "max_length")}
+"""Bounds of the number of entries of a list, as pydantic calls them."""
+
+
 def allowed_by(complaint: ErrorDetails) -> str:
     """Values that would have been allowed in the place of one that pydantic complains about."""
+    if complaint["type"] in _LENGTHS:
+        bound, key = _LENGTHS[complaint["type"]]
+        count = complaint["ctx"][key]
+        return f"{bound} {count} {'entry' if count == 1 else 'entries'}"
     text = complaint["msg"].removeprefix("Value error, ").removeprefix("Input should be ")
     return f"a value {text}" if text.startswith(("greater", "less")) else text
 

@@ -40,11 +40,6 @@ class Others:
     bodies: tuple[Body, ...]
     pose: Pose
 
-    @property
-    def none(self) -> Others:
-        """Nobody at all."""
-        return Others((), Pose(self.pose.position[:0], self.pose.orientation[:0]))
-
     def joined(self, bodies: tuple[Body, ...], pose: Pose) -> Others:
         """These and further bodies."""
         position = np.concatenate([self.pose.position, pose.position])
@@ -103,20 +98,30 @@ class Placement:
 
     def _stuck(self, scale: float) -> SceneError:
         """Error for bodies that have no room beyond this size."""
-        swarm = self.swarm
-        asked = swarm.volume / self.region.volume
-        key = "number" if swarm.table.fraction is None else "fraction"
-        found = f"{len(swarm)} bodies, {asked:.3g} of the region's volume"
-        allowed = f"up to about {asked * scale**swarm.dimension:.3g}, which was reached with gaps in proportion"
-        remedy = f"Ask for fewer bodies, a smaller `gap` than {swarm.gap:.3g}, or another `scene.seed`."
-        return SceneError(f"{swarm.at}.{key}", found, allowed if scale else "fewer, as they found no places", remedy)
+        gap = f"a smaller `gap` than {self.swarm.gap:.3g}, or another `scene.seed`"
+        if not scale:
+            return self._too_much("fewer or smaller, as no place was found", gap)
+        reached = self._asked * scale**self.swarm.dimension
+        return self._too_much(f"up to about {reached:.3g}, which was reached with gaps in proportion", gap)
 
     def _refuse_overfull(self) -> None:
-        asked = self.swarm.volume / self.region.volume
-        if asked >= 1.0:
-            key = "number" if self.swarm.table.fraction is None else "fraction"
-            found = f"{len(self.swarm)} bodies, {asked:.3g} of the region's volume"
-            raise SceneError(f"{self.swarm.at}.{key}", found, "bodies that fill less than the region", "Ask for fewer.")
+        if self._asked >= 1.0:
+            raise self._too_much("less than the region", "a larger region")
+
+    @property
+    def _asked(self) -> float:
+        """Volume of the bodies over that of the region [1]."""
+        return self.swarm.volume / self.region.volume
+
+    def _too_much(self, allowed: str, remedy: str) -> SceneError:
+        """Error for bodies that ask for more room than is ``allowed``."""
+        swarm, share = self.swarm, f"{self._asked:.3g} of the region's volume"
+        if len(swarm) == 1:
+            return SceneError(f"{swarm.at}.shape", f"a body of {share}", allowed, f"Make it smaller, or give {remedy}.")
+        key = "number" if swarm.table.fraction is None else "fraction"
+        return SceneError(
+            f"{swarm.at}.{key}", f"{len(swarm)} bodies, {share}", allowed, f"Ask for fewer bodies, or {remedy}."
+        )
 
     def _refuse_narrow(self) -> None:
         """Refuse gaps and bodies for which the region is too narrow even where nothing else is."""
