@@ -120,7 +120,7 @@ def _frames(results: Results, every: int) -> list[_Frame]:
 def _picture(results: Results, shot: Shot, frame: _Frame, look: Look, scale: Scale | None) -> FloatArray:
     grid = shot.grid(frame.state, look.longer)
     if frame.path is not None and scale is not None:
-        picture = paint_flow(flow_image(frame.path, look.show, grid), scale)
+        picture = paint_flow(flow_image(results.fields(frame.path), look.show, grid), scale)
         draw_bodies(picture, grid, results, frame.state)
         return picture
     picture = ground(results, grid)

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 from matplotlib.colors import to_rgb
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.output.vtu import read_vtu
+from rigidfluid.core.model.types import Fields
 from rigidfluid.post.reports.bodies import PlacedBody, seen_bodies
 from rigidfluid.post.reports.raster import Grid
 from rigidfluid.post.reports.results import Results
@@ -23,9 +21,9 @@ _HAND = 0.12
 """Half the width of the mark over the body's bounding radius."""
 
 
-def flow_image(path: Path, quantity: Quantity, grid: Grid) -> FloatArray:
-    """A quantity of the fields in a file at the points of a grid, (rows, columns), nan outside the fluid."""
-    section = Section.cut(read_vtu(path), grid.plane, grid.origin)
+def flow_image(fields: Fields, quantity: Quantity, grid: Grid) -> FloatArray:
+    """A quantity of the fields at the points of a grid, (rows, columns), nan outside the fluid."""
+    section = Section.cut(fields, grid.plane, grid.origin)
     return section.image(section.values(quantity), grid)
 
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
-from rigidfluid.core.output.vtu import read_vtu
 from rigidfluid.post.reports.bodies import cuts
 from rigidfluid.post.reports.results import Results
 from rigidfluid.post.reports.section import Section
@@ -21,7 +20,7 @@ MOMENTS = 4
 class Moment:
     """The fields' ``section`` at one output time; the ``centre`` (2,) of the body looked at, to the right and up, the
     ``width`` of the ball around it and its ``gap`` [length]; and ``outlines`` of bodies in the plane, (K, 2) each.
-    ``has_body``: whether that body is there."""
+    ``has_body``: whether that body is there. ``extent``: corners (2,) of what is in the domain."""
 
     time: float
     section: Section
@@ -30,6 +29,7 @@ class Moment:
     gap: float
     outlines: tuple[FloatArray, ...] = ()
     has_body: bool = True
+    extent: tuple[FloatArray | float, FloatArray | float] = (-np.inf, np.inf)
 
 
 @dataclass(frozen=True)
@@ -46,8 +46,8 @@ class View:
 
     @classmethod
     def whole(cls, moment: Moment) -> View:
-        """All that is meshed."""
-        points = moment.section.flat_points
+        """All that is meshed in the domain."""
+        points = np.clip(moment.section.flat_points, *moment.extent)
         return cls(points.min(axis=0), points.max(axis=0))
 
     def holds(self, points: FloatArray) -> BoolArray:
@@ -69,12 +69,13 @@ def moment(results: Results, output: int, plane: ViewPlane, body: int) -> Moment
     centre = results.path(body)[state]
     return Moment(
         time=time,
-        section=Section.cut(read_vtu(path), plane, centre),
+        section=Section.cut(results.fields(path), plane, centre),
         centre=plane.flat(centre),
         width=2.0 * results.system.bodies[body].bounding_radius,
         gap=float(results.bodies["gap"][state, body]),
         outlines=tuple(cuts(results, state, plane, centre)),
         has_body=bool(results.present[state, body]),
+        extent=plane.extent(*results.system.domain.extent),
     )
 
 

@@ -13,12 +13,14 @@ from rigidfluid.core.case.population import Population, assemble_ever
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import Fields
+from rigidfluid.core.output.field_images import continued
 from rigidfluid.core.output.records import columns, moving, quantity_columns
 from rigidfluid.core.output.results_folder import is_being_written
 from rigidfluid.core.output.run_document import read_changes, read_document
 from rigidfluid.core.output.run_files import RUN
 from rigidfluid.core.output.tables import table_path
-from rigidfluid.core.output.vtu import read_pvd
+from rigidfluid.core.output.vtu import read_pvd, read_vtu
 from rigidfluid.core.output.writer import SERIES, SUMMARY
 from rigidfluid.core.setup.assemble import assemble
 from rigidfluid.core.setup.description import refuse_description
@@ -108,6 +110,10 @@ class Results:
     def quantity(self, name: str) -> FloatArray:
         """One of the `quantity_columns` of all bodies, its components last, (s, n, d), (s, n, k) or (s, n, q)."""
         return np.stack([self.bodies[column] for column in quantity_columns(self.system.dimension)[name]], axis=-1)
+
+    def fields(self, path: Path) -> Fields:
+        """Fields in a file, along periods of all cells in the domain, in which the mesh itself need not be."""
+        return continued(read_vtu(path), self.system.lattice)
 
     def path(self, body: int) -> FloatArray:
         """Positions of a body by number (s, d), along periods those of its image in the domain; its first before it

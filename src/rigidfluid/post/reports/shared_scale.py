@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.output.vtu import read_vtu
 from rigidfluid.post.reports.results import Results
 from rigidfluid.post.reports.scale import Quantity, Scale
 from rigidfluid.post.reports.section import Section
@@ -33,7 +32,7 @@ def shared_scales(
     found: list[list[tuple[FloatArray, FloatArray]]] = [[] for _ in quantities]
     for time, path in (there[i] for i in chosen):
         through = results.path(follow or 0)[results.state_at(time)]
-        section = Section.cut(read_vtu(path), plane, through)
+        section = Section.cut(results.fields(path), plane, through)
         for quantity, spreads in zip(quantities, found, strict=True):
             spreads.append(section.spread(quantity))
     return [

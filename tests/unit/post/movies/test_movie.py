@@ -122,7 +122,7 @@ def test_the_mark_turns_with_the_body(dry: Path) -> None:
 def test_the_fluid_is_shown_as_it_is_in_the_files(wet: Path) -> None:
     results = read_results(wet, motion_only=True)
     grid = shot_of(results, None, None).grid(-1, 200)
-    image = flow_image(results.series[-1][1], "speed", grid)
+    image = flow_image(results.fields(results.series[-1][1]), "speed", grid)
     fastest = np.nanmax(image)
     assert fastest == pytest.approx(-results.bodies["vy"][-1, 0], rel=0.1)
     assert np.isnan(image).sum() * grid.right[0] * grid.up[1] == pytest.approx(results.system.bodies[0].volume, rel=0.1)
@@ -139,7 +139,7 @@ def test_bodies_are_drawn_apart_from_what_is_outside(wet: Path) -> None:
     """Of a window larger than the domain; a body's colour is nowhere outside, nor in the ground of a dry run."""
     results = read_results(wet, motion_only=True)
     grid = shot_of(results, None, (-0.5, 0.0, 2.5, 6.0)).grid(-1, 300)
-    image = flow_image(results.series[-1][1], "speed", grid)
+    image = flow_image(results.fields(results.series[-1][1]), "speed", grid)
     picture = paint_flow(image, Scale("speed", 0.0, 1.0, 1.0))
     lines = np.all(picture == to_rgb(HATCH), axis=2)
     assert lines[:, :20].sum() == pytest.approx(0.25 * lines[:, :20].size, rel=0.02)
