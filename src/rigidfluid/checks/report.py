@@ -21,6 +21,7 @@ from rigidfluid.checks.mechanisms import mechanism_findings
 from rigidfluid.checks.memory import memory_findings
 from rigidfluid.checks.overridden import overridden_findings
 from rigidfluid.checks.pair_rows import PairRow, pair_rows
+from rigidfluid.checks.periodic import periodic_findings
 from rigidfluid.checks.range_checks import parallel_wall_findings, range_findings, start_findings
 from rigidfluid.checks.rebound import rebound_findings
 from rigidfluid.checks.resolution import resolution_findings
@@ -120,6 +121,7 @@ def _findings_at_start(model: Model, system: System, start: Contacts) -> Iterato
     size = None if mesh is None else run_size(model, system, mesh)
     if size is not None:
         yield from chain(memory_findings(size), run_time_findings(size, system, model.time))
+    yield from periodic_findings(system)
     for interaction in system.interactions:
         yield from start_findings(system, interaction, start)
 

@@ -90,7 +90,8 @@ class PeriodicTable(_BoundaryTable):
     Bodies cross them, and meet images of each other. Pairs are then at right angles to each other, all other surfaces
     flat and along the way across, and a body's longest diameter and the range of the laws are together less than the
     distance of the surfaces. Positions in results go on beyond the domain. With a fluid there may be other surfaces,
-    such as obstacles: a run then ends where the centre of a body leaves the domain.
+    such as obstacles: a run then ends where the centre of a body leaves the domain, or a body comes within the range of
+    the laws to an image of another body or of a curved wall.
     """
 
     type: Literal["periodic"] = Field(description="The condition")

@@ -14,6 +14,7 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.value_types import describe
 from rigidfluid.core.mesh.adaptation.coarsening import has_coarsened, is_due, relative_sizes
+from rigidfluid.core.mesh.adaptation.crossing import refuse_to_cross
 from rigidfluid.core.mesh.adaptation.kept_cells import LAYERS
 from rigidfluid.core.mesh.adaptation.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.adaptation.remesh import initial_mesh, remesh, well_cut
@@ -105,7 +106,7 @@ class MeshUpdater:
     def deform(self, state: State, pose: Pose) -> Mesh:
         """The mesh when the bodies are at ``pose``; raises StepRejected where a cell is tangled."""
         _refuse_to_leave(self.system, pose)
-        _refuse_to_cross(self.system, pose)
+        refuse_to_cross(self.system, pose)
         geometry, worst = self._placed(state.reference, pose)
         if worst < TANGLED:
             raise StepRejected(
@@ -246,20 +247,6 @@ def _refuse_to_leave(system: System, pose: Pose) -> None:
             f"its centre at {pose.position[left].tolist()}, where it leaves the window",
             f"at least {CLEARANCE:g} of its radii from {lower:.6g} and {upper:.6g} along {'xyz'[system.window.axis]}",
             "Lengthen domain.window.ahead or domain.window.behind, or follow another body.",
-        )
-
-
-def _refuse_to_cross(system: System, pose: Pose) -> None:
-    """Reject a step in which a body leaves a domain with periodic surfaces beyond which its contacts are not known."""
-    if not system.domain.periodic or len(system.lattice.vectors):
-        return
-    outside = np.flatnonzero(~system.domain.contains(pose.position))
-    if len(outside):
-        raise StepRejected(
-            f"body {system.surfaces[outside[0]]!r}",
-            f"its centre at {pose.position[outside[0]].tolist()}, beyond a periodic surface",
-            "bodies that stay in a domain with obstacles, curved or oblique walls, long-range forces or longer bodies",
-            "Lengthen the domain, end the run before, or hold the body.",
         )
 
 
