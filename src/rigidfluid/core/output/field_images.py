@@ -26,13 +26,12 @@ def continued(fields: Fields, lattice: Lattice) -> Fields:
     moves = home + np.array(list(product((0, -1, 1), repeat=count)))[:, None]
     lowest, highest = moves + where.min(axis=1), moves + where.max(axis=1)
     image, cell = np.nonzero(np.all((lowest < 1.0 - _SAME) & (highest > _SAME), axis=2))
-    nodes, width = fields.cells[cell].reshape(-1, 1), fields.cells.shape[1]
-    keys = np.concatenate([nodes, np.repeat(moves[image, cell], width, axis=0)], axis=1)
-    kept, cells = np.unique(keys, axis=0, return_inverse=True)
-    node, move = kept[:, 0], kept[:, 1:]
+    ways, way = np.unique(moves[image, cell], axis=0, return_inverse=True)
+    kept, cells = np.unique(way.reshape(-1, 1) * len(fields.points) + fields.cells[cell], return_inverse=True)
+    node, move = kept % len(fields.points), ways[kept // len(fields.points)]
     return Fields(
         points=fields.points[node] + lattice.displacement(move),
-        cells=cells.reshape(-1, width),
+        cells=cells.reshape(-1, fields.cells.shape[1]),
         velocity=fields.velocity[node],
         pressure=fields.pressure[node] + move @ _jumps(fields, lattice),
     )
