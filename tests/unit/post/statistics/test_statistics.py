@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import tracemalloc
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -18,7 +19,8 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.setup.assemble import assemble
 from rigidfluid.errors import OutputError
 from rigidfluid.post.reports import report
-from rigidfluid.post.reports.results import read_results
+from rigidfluid.post.reports.report import Section
+from rigidfluid.post.reports.results import Results, read_results
 from rigidfluid.post.statistics import statistics
 from rigidfluid.post.statistics.blocks import mean
 from rigidfluid.post.statistics.contact_network import contact_network
@@ -27,8 +29,8 @@ from rigidfluid.post.statistics.contact_stresses import contact_stresses
 from rigidfluid.post.statistics.motion import diffusion, velocity_fluctuations
 from rigidfluid.post.statistics.pair_distribution import pair_distribution, shell_shares
 from rigidfluid.post.statistics.profiles import profile
+from rigidfluid.post.statistics.report_section import _stresses, section
 from rigidfluid.post.statistics.samples import Samples, samples_of
-from rigidfluid.post.statistics.section import _stresses, section
 from rigidfluid.post.statistics.structure_factor import structure_factor
 from rigidfluid.post.statistics.suspension_stress import StressFigures, SuspensionStress, suspension_stress
 
@@ -239,6 +241,14 @@ def test_the_report_of_many_bodies_has_statistics_and_that_of_few_has_none(tmp_p
     assert "Statistics" not in pages[0]
     assert ">Statistics</a>" in pages[1]
     assert "<li>share with a contact: " in pages[1]
+
+
+def test_one_body_with_stresslets_has_no_statistics_in_its_report() -> None:
+    one = SimpleNamespace(folder=Path(), system=SimpleNamespace(prescribed=np.array([True, False])))
+    tables = {"stresslets": {"step": np.arange(3)}}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("rigidfluid.post.statistics.report_section.tables_of", lambda _: tables)
+        assert section(cast("Results", one)) == Section()
 
 
 def test_the_report_says_why_a_run_has_no_statistics(tmp_path: Path) -> None:

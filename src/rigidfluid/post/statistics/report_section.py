@@ -13,6 +13,7 @@ from rigidfluid.post.reports.results import Results
 from rigidfluid.post.statistics.figures import told
 from rigidfluid.post.statistics.measure import measured, tables_of
 from rigidfluid.post.statistics.plot import statistics_plot
+from rigidfluid.post.statistics.samples import LEAST
 from rigidfluid.post.statistics.suspension_stress import SuspensionStress
 
 FEWEST = 8
@@ -23,9 +24,9 @@ _WORDS = "Structure, motion and layers of the bodies, means from a third of the 
 
 
 def section(results: Results) -> Section:
-    """Statistics from a third of the run on; nothing for few bodies without stresslets."""
+    """Statistics from a third of the run on; nothing for few bodies without stresslets, or for one."""
     tables, count = tables_of(results.folder), int(np.sum(~results.system.prescribed))
-    if count < FEWEST and not len(tables["stresslets"].get("step", ())):
+    if count < (LEAST if len(tables["stresslets"].get("step", ())) else FEWEST):
         return Section()
     try:
         found = measured(results, tables, most=max(1, MOST // count))
