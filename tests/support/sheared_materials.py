@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -68,7 +69,7 @@ def channel_speed(material: GeneralisedNewtonian, height: float, panels: int = 1
     to_wall = min(height, 1.0 - height)
     edges = np.linspace(0.0, to_wall, panels + 1)
     found = 0.0
-    for low, high in zip(edges[:-1], edges[1:], strict=True):
+    for low, high in pairwise(edges):
         at = 0.5 * (low + high) + 0.5 * (high - low) * _ROOTS
         rates = [shear_rate_at(material, DROP * (0.5 - s)) for s in at]
         found += 0.5 * (high - low) * float(_WEIGHTS @ rates)

@@ -220,6 +220,13 @@ class SparseDiscretisation:
             shapes["corrections"] = len(memory["corrections"]), self.unknowns
         for name, shape in shapes.items():
             refuse_other_rows(memory[name], shape, name)
+        if LocalViscosity.is_in(memory):
+            refuse_other_rows(
+                memory["points"], (self.numbering.vertices + len(self.numbering.on_curves), nodes[1]), "points"
+            )
+            points = len(self._assembly.strain_rates(memory["points"], memory["flow"]).weight)
+            for name, shape in LocalViscosity.shapes(points, len(self.numbering.cells), nodes[1]).items():
+                refuse_other_rows(memory[name], shape, name)
 
     def _named_solvers(self) -> tuple[tuple[bool, LaggedSolver[Parts]], ...]:
         """Each solver, and whether it is the one for viscous matrices."""

@@ -58,9 +58,18 @@ class LocalViscosity:
     @classmethod
     def recalled(cls, memory: Mapping[str, FloatArray]) -> LocalViscosity:
         """What gave this `memory`."""
-        if f"{_PREFIX}{_NAMES[0]}" not in memory:
-            return UNIFORM
-        return cls(*(memory[f"{_PREFIX}{name}"] for name in _NAMES))
+        return cls(*(memory[f"{_PREFIX}{name}"] for name in _NAMES)) if cls.is_in(memory) else UNIFORM
+
+    @staticmethod
+    def is_in(memory: Mapping[str, FloatArray]) -> bool:
+        """Tell whether a `memory` has one that varies."""
+        return any(name.startswith(_PREFIX) for name in memory)
+
+    @staticmethod
+    def shapes(points: int, cells: int, dimension: int) -> dict[str, tuple[int, ...]]:
+        """Shapes of the arrays of a `memory`."""
+        shapes = (points,), (points,), (points, dimension, dimension), (cells,)
+        return {f"{_PREFIX}{name}": shape for name, shape in zip(_NAMES, shapes, strict=True)}
 
 
 UNIFORM = LocalViscosity(np.empty(0), np.empty(0), np.empty((0, 0, 0)), np.ones(1))
