@@ -12,13 +12,11 @@ from rigidfluid.errors import SceneError, StepRejected
 from rigidfluid.taylor_hood.elements.container import container_velocity
 from rigidfluid.taylor_hood.elements.state import resting_state
 from rigidfluid.taylor_hood.stepping.advance import centre_pressure
-from rigidfluid.taylor_hood.stepping.newton import NEAR
+from rigidfluid.taylor_hood.stepping.newton import solve_newton
 from rigidfluid.taylor_hood.stepping.transfer import project
 from rigidfluid.taylor_hood.system.boundary import pressure_load
 from rigidfluid.taylor_hood.system.coupled import CoupledMatrix, CoupledSystem
 from rigidfluid.taylor_hood.system.discretisation import Discretisation
-from rigidfluid.taylor_hood.system.driving import solve_driven
-from rigidfluid.taylor_hood.system.linearised import linearised
 
 STEADY, MOST_ITERATIONS = 1e-8, 200
 """A flow is steady when an iteration changes it by so little, relative in L²; so many are tried."""
@@ -39,8 +37,8 @@ def formula_flow(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pos
 
 
 def steady_flow(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twist: Twist) -> FluidState:
-    """The flow past bodies with these twists that does not change in time, by Picard's iteration from Stokes flow, and
-    Newton's for a viscosity that varies:
+    """The flow past bodies with these twists that does not change in time, by Picard's iteration from Stokes flow
+    (and within it Newton's where the viscosity varies):
 
     ρ((uᵏ·∇)uᵏ⁺¹ + ½(∇·uᵏ)uᵏ⁺¹, v) + μ(∇u + ∇uᵀ, ∇v) + (γ∇·u, ∇·v) - (p, ∇·v) = (f, v), (∇·uᵏ⁺¹, q) = 0, with the
     values at time 0.
@@ -84,21 +82,17 @@ def _stokes(target: Discretisation, mesh: Mesh, state: FluidState) -> CoupledSys
 def _picard(target: Discretisation, tolerance: float, system: CoupledSystem) -> CoupledSystem:
     """The equations whose guess is their solution, and which convect with it."""
     density, matrix, change = target.problem.inert_density, system.matrix, np.inf
-    load = system.load
     frame = container_velocity(target.surfaces, 0.0, matrix.node_points)
     for _ in range(MOST_ITERATIONS):
-        stress = linearised(target, matrix.points, system.velocity, change < NEAR)
-        matrix = replace(matrix, local=stress.local)
-        system = replace(system, matrix=matrix, load=load + stress.load)
         try:
-            solution = solve_driven(target, system, NO_LINKS, 0.0, tolerance).solution
+            solution = solve_newton(target, system, NO_LINKS, 0.0, tolerance)[1].solution
         except StepRejected as error:
             raise _not_steady(target, matrix.node_points, system.velocity, str(error)) from None
         change = _relative_norm(target, matrix.points, solution.velocity - system.velocity, solution.velocity)
         flow = density * solution.velocity
         matrix = replace(matrix, advection=flow, flow=flow - density * frame, frame=frame)
         system = replace(system, matrix=matrix, velocity=solution.velocity, pressure=solution.pressure, again=True)
-        if change < STEADY or (density == 0.0 and not stress.local.varies):
+        if change < STEADY or density == 0.0:
             return system
     raise _not_steady(target, matrix.node_points, system.velocity, f"changes of {change:.1g} in the last iteration")
 
