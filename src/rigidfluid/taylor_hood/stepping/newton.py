@@ -17,7 +17,7 @@ from rigidfluid.taylor_hood.system.linearised import linearised, relative_change
 _SHARE = 0.1
 """Share of √tolerance at which changes end the iteration [1]: what is left is then about the square of the change."""
 
-_MOST = 60
+_MOST = 100
 """Greatest number of iterations."""
 
 _EXCESS, _HALVINGS = 0.5, 8
