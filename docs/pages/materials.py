@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.patches import Circle
 from matplotlib.tri import Triangulation
 from page_tools import Page, Work, table
 from sheared_materials import channel_flow, channel_speed, materials, turning_flow, turning_torque
@@ -24,7 +25,7 @@ COARSE = {"size": 0.25, "size_body": 0.06, "growth": 0.1}
 @dataclass(frozen=True)
 class Cylinder:
     """Steady flow around a cylinder of diameter 1 and velocity 1 in a fluid with the yield stress 1: its ``drag``, and
-    the ``triangulation`` with the shear stress over the yield stress in its cells."""
+    the ``stress`` in those cells where the fluid yields, a ``triangulation``."""
 
     drag: float
     triangulation: Triangulation
@@ -83,7 +84,9 @@ def cylinder(number: int, mesh: dict[str, float]) -> Cylinder:
     slopes = velocity_gradients(fields)[:, :3].mean(axis=1)
     rate = np.sqrt(0.5 * np.sum((slopes + np.swapaxes(slopes, 1, 2)) ** 2, axis=(1, 2)))
     stress = it.system.fluid.material.viscosity(rate) * rate
-    return Cylinder(-float(it.bodies["body0"].force[0]), Triangulation(*fields.points.T, fields.cells[:, :3]), stress)
+    yields = stress >= 1.0
+    triangulation = Triangulation(*fields.points.T, fields.cells[yields, :3])
+    return Cylinder(-float(it.bodies["body0"].force[0]), triangulation, stress[yields])
 
 
 def plot(cylinders: Mapping[int, Cylinder]) -> Figure:
@@ -91,8 +94,8 @@ def plot(cylinders: Mapping[int, Cylinder]) -> Figure:
     figure = Figure(figsize=(9.0, 2.8), dpi=120, layout="constrained")
     every = figure.subplots(1, len(cylinders), sharey=True)
     for axes, (number, found) in zip(every, cylinders.items(), strict=True):
-        shown = np.ma.masked_less(found.stress, 1.0)
-        image = axes.tripcolor(found.triangulation, shown, cmap="viridis", vmin=1.0, vmax=2.0)
+        image = axes.tripcolor(found.triangulation, found.stress, cmap="viridis", vmin=1.0, vmax=2.0)
+        axes.add_patch(Circle((0.0, 0.0), 0.5, color="grey"))
         axes.set(aspect="equal", title=f"Bingham number {number}", xlim=(-2.5, 2.5), ylim=(-2.5, 2.5))
     figure.colorbar(image, ax=every, label="stress / yield stress", extend="max")
     return figure

@@ -90,3 +90,12 @@ def test_a_backend_for_newtonian_fluids_refuses_others():
     pytest.importorskip("ngsolve")
     with pytest.raises(RigidfluidError, match=r"fluid\.material: found Carreau with backend 'ngsolve'"):
         Simulation(scene_from_dict(given))
+
+
+def test_steps_are_expected_to_cost_twice_as_much():
+    costs = []
+    for material in (CARREAU, None):
+        backend = Simulation(scene_from_dict(tables(material))).system.backend
+        costs.append(backend.solver_cost(1000.0, 100.0))
+    assert costs[0].step_seconds == 2.0 * costs[1].step_seconds
+    assert costs[0].memory == costs[1].memory
