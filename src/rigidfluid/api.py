@@ -62,6 +62,7 @@ from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.generalised_newtonian import GeneralisedNewtonian
 from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.mechanism import Component, Mechanism
 from rigidfluid.core.model.part import Part, PartOptions
@@ -139,6 +140,11 @@ from rigidfluid.joints.hinge import Hinge, HingeOptions
 from rigidfluid.joints.rod import Rod
 from rigidfluid.joints.slider import Slider, SliderOptions
 from rigidfluid.marching.options import MarchingOptions
+from rigidfluid.materials.bingham import Bingham, BinghamOptions
+from rigidfluid.materials.carreau import Carreau, CarreauOptions
+from rigidfluid.materials.cross import Cross, CrossOptions
+from rigidfluid.materials.herschel_bulkley import HerschelBulkley, HerschelBulkleyOptions
+from rigidfluid.materials.power_law import PowerLaw, PowerLawOptions
 from rigidfluid.mechanisms.articulated import Articulated, ArticulatedOptions, RelativeStrokeTable
 from rigidfluid.mechanisms.components import ComponentTable, build_components
 from rigidfluid.mechanisms.strokes import (
@@ -156,6 +162,7 @@ from rigidfluid.registry import (
     FLUID_BACKEND,
     FORCE_LAW,
     JOINT,
+    MATERIAL,
     MECHANISM,
     SIZE_FIELD,
     Registry,
@@ -181,6 +188,7 @@ __all__ = [
     "FLUID_BACKEND",
     "FORCE_LAW",
     "JOINT",
+    "MATERIAL",
     "MECHANISM",
     "SIZE_FIELD",
     "Advance",
@@ -193,6 +201,8 @@ __all__ = [
     "BallOptions",
     "BarrierLaw",
     "BarrierOptions",
+    "Bingham",
+    "BinghamOptions",
     "Body",
     "BodyNow",
     "BoolArray",
@@ -203,6 +213,8 @@ __all__ = [
     "BruteForceOptions",
     "Cad",
     "CadOptions",
+    "Carreau",
+    "CarreauOptions",
     "CentreLaw",
     "CentreOptions",
     "Channel",
@@ -219,6 +231,8 @@ __all__ = [
     "Coordinate",
     "CoordinateDamper",
     "CoordinateSpring",
+    "Cross",
+    "CrossOptions",
     "Detector",
     "DipoleLaw",
     "DipoleOptions",
@@ -246,6 +260,9 @@ __all__ = [
     "FluidProblem",
     "FluidState",
     "ForceLaw",
+    "GeneralisedNewtonian",
+    "HerschelBulkley",
+    "HerschelBulkleyOptions",
     "Hinge",
     "HingeOptions",
     "History",
@@ -298,6 +315,8 @@ __all__ = [
     "Pose",
     "PoseLaw",
     "Positive",
+    "PowerLaw",
+    "PowerLawOptions",
     "PrescribedPressure",
     "PrescribedTable",
     "PrescribedVelocity",

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from rigidfluid.core.model.domain import Domain
     from rigidfluid.core.model.fluid_backend import FluidBackend
     from rigidfluid.core.model.force_law import ForceLaw
+    from rigidfluid.core.model.generalised_newtonian import GeneralisedNewtonian
     from rigidfluid.core.model.mechanism import Mechanism
 
 hookspec = pluggy.HookspecMarker("rigidfluid")
@@ -67,3 +68,8 @@ def rigidfluid_joints() -> list[type[Joint]]:  # type: ignore[empty-body]
 @hookspec
 def rigidfluid_size_fields() -> list[type[SizeField]]:  # type: ignore[empty-body]
     """Classes of edge lengths wanted in the fluid."""
+
+
+@hookspec
+def rigidfluid_materials() -> list[type[GeneralisedNewtonian]]:  # type: ignore[empty-body]
+    """Classes of fluids whose viscosity varies with the shear rate."""

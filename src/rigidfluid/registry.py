@@ -24,6 +24,7 @@ from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.generalised_newtonian import GeneralisedNewtonian
 from rigidfluid.core.model.mechanism import Mechanism
 from rigidfluid.core.model.part import Part
 from rigidfluid.core.scene.spelling import suggestion
@@ -68,7 +69,18 @@ DOMAIN = Kind("rigidfluid_domains", Domain, "domain.type")  # type: ignore[type-
 MECHANISM = Kind("rigidfluid_mechanisms", Mechanism, "mechanism.type")  # type: ignore[type-abstract]
 JOINT = Kind("rigidfluid_joints", Joint, "joint.type")  # type: ignore[type-abstract]
 SIZE_FIELD = Kind("rigidfluid_size_fields", SizeField, "mesh.field.type")  # type: ignore[type-abstract]
-KINDS: tuple[Kind[Any], ...] = (FLUID_BACKEND, DETECTOR, FORCE_LAW, BODY, DOMAIN, MECHANISM, JOINT, SIZE_FIELD)
+MATERIAL = Kind("rigidfluid_materials", GeneralisedNewtonian, "fluid.material.type")  # type: ignore[type-abstract]
+KINDS: tuple[Kind[Any], ...] = (
+    FLUID_BACKEND,
+    DETECTOR,
+    FORCE_LAW,
+    BODY,
+    DOMAIN,
+    MECHANISM,
+    JOINT,
+    SIZE_FIELD,
+    MATERIAL,
+)
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ BUILT_IN = (
     *(("backends", "rigidfluid_fluid_backends"), ("detectors", "rigidfluid_detectors")),
     *(("forces", "rigidfluid_force_laws"), ("bodies", "rigidfluid_bodies"), ("domains", "rigidfluid_domains")),
     *(("mechanisms", "rigidfluid_mechanisms"), ("joints", "rigidfluid_joints")),
-    ("size_fields", "rigidfluid_size_fields"),
+    *(("size_fields", "rigidfluid_size_fields"), ("materials", "rigidfluid_materials")),
 )
 """Rooms of built-in parts, and the hook of each."""
 

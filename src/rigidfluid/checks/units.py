@@ -6,8 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rigidfluid.checks.finding import Figures, Finding, figure
+from rigidfluid.checks.finding import Finding, figure
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
+from rigidfluid.core.model.generalised_newtonian import GeneralisedNewtonian
 from rigidfluid.core.model.system import System
 from rigidfluid.core.setup.model import Model
 
@@ -24,18 +25,25 @@ _MIXED = (
 
 
 def unit_findings(model: Model, system: System) -> Iterator[Finding]:
-    """Tell speed, Reynolds number and way of the fastest body; a warning where gravity is the Earth's in another unit
-    than densities of liquids and solids are in."""
+    """Tell speed, Reynolds and Bingham number and way of the fastest body, with the viscosity of the shear rate
+    v/d; a warning where gravity is the Earth's in another unit than densities of liquids and solids are in."""
     speeds, fluid = system.loads.travel_speed, system.fluid
     if fluid is None or speeds is None or not np.any(speeds > 0.0):
         return
     fastest = int(np.argmax(speeds))
     name, speed = system.surfaces[fastest], float(speeds[fastest])
     diameter = 2.0 * equal_volume_radius(system.bodies[fastest])
-    reynolds = speed * diameter * fluid.density / fluid.material.dynamic_viscosity
-    found: Figures = {"speed": speed, "reynolds": reynolds, "diameters": speed * model.time.end / diameter}
+    viscosity = float(fluid.material.viscosity(np.array([speed / diameter]))[0])
+    reynolds = speed * diameter * fluid.density / viscosity
+    found: dict[str, float] = {"speed": speed, "reynolds": reynolds, "diameters": speed * model.time.end / diameter}
     text = f"{name} may reach a speed of {figure(speed)} and a Reynolds number of {figure(reynolds)}, and go"
     text += f" {figure(speed * model.time.end / diameter)} diameters until time.end"
+    if isinstance(fluid.material, GeneralisedNewtonian):
+        found["viscosity"] = viscosity
+        text += f", at the viscosity {figure(viscosity)} of the shear rate {figure(speed / diameter)}"
+        if (yield_stress := fluid.material.yield_stress) is not None:
+            found["bingham"] = yield_stress * diameter / (fluid.material.dynamic_viscosity * speed)
+            text += f"; its Bingham number is {figure(found['bingham'])}"
     densities = [fluid.density, *(body.density for body in model.bodies)]
     vector = np.zeros(model.dimension) if model.gravity is None else np.asarray(model.gravity, dtype=float)
     gravity = float(np.linalg.norm(vector))

@@ -23,6 +23,7 @@ _MODULES = (
     "fluid_backend",
     "force_law",
     "joint",
+    "material",
     "mechanism",
     "pose_law",
     "size_field",
@@ -36,6 +37,7 @@ from rigidfluid.testing.domain import DomainContract
 from rigidfluid.testing.fluid_backend import FluidBackendContract
 from rigidfluid.testing.force_law import ForceLawContract
 from rigidfluid.testing.joint import JointContract
+from rigidfluid.testing.material import MaterialContract
 from rigidfluid.testing.mechanism import MechanismContract
 from rigidfluid.testing.pose_law import PoseLawContract
 from rigidfluid.testing.size_field import SizeFieldContract
@@ -48,6 +50,7 @@ __all__ = [
     "FluidBackendContract",
     "ForceLawContract",
     "JointContract",
+    "MaterialContract",
     "MechanismContract",
     "PoseLawContract",
     "SizeFieldContract",

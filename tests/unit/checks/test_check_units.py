@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from falling import falling_disk
 from paths import SCENES
 
-from rigidfluid import load_scene
+from rigidfluid import load_scene, scene_from_dict
 from rigidfluid.checks import check
 from rigidfluid.checks.finding import Finding
 
@@ -61,3 +62,20 @@ def test_gravity_in_the_units_that_the_scene_names_is_not_doubted() -> None:
         one for one in check(load_scene(SCENES / "falling_disk.toml", units)).findings if one.question == "units"
     ]
     assert finding.grade == "note"
+
+
+def test_the_reynolds_number_is_that_of_the_viscosity_at_the_shear_rate_of_the_body() -> None:
+    """And a fluid with a yield stress has a Bingham number, τ_y d/(μ v)."""
+    material = {"type": "bingham", "viscosity": 0.1, "yield_stress": 4.0, "stress_growth": 0.01}
+    given = falling_disk().to_dict()
+    del given["fluid"]["viscosity"]
+    scene = scene_from_dict(given | {"fluid": given["fluid"] | {"material": material}})
+    (finding,) = [one for one in check(scene).findings if one.question == "units"]
+    speed = finding.found["speed"]
+    assert isinstance(speed, float)
+    rate = speed / 0.25
+    viscosity = 0.1 + 4.0 * (1.0 - np.exp(-0.01 * rate)) / rate
+    assert finding.found["viscosity"] == pytest.approx(viscosity)
+    assert finding.found["reynolds"] == pytest.approx(0.25 * speed / viscosity)
+    assert finding.found["bingham"] == pytest.approx(4.0 * 0.25 / (0.1 * speed))
+    assert "Bingham number" in finding.text

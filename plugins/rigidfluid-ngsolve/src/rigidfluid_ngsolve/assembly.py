@@ -12,6 +12,7 @@ from rigidfluid.api import FloatArray, IntArray
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.linear_solver.projection import Masses
 from rigidfluid.taylor_hood.system.coefficients import Coefficients
+from rigidfluid.taylor_hood.system.newtonian import NewtonianOnly
 from rigidfluid_ngsolve.mesh import NodeMesh
 
 _ORDER_OF_FIELD = 2
@@ -24,7 +25,7 @@ _ORDER_OF_CURVES = 4
 """More of it where cells are curved: exact for convection and divergence, as with scikit-fem."""
 
 
-class FormAssembly:
+class FormAssembly(NewtonianOnly):
     """Matrices and loads on the cells of ``numbering``; forms and sparsity are made once.
 
     Parameters

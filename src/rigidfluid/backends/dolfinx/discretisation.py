@@ -24,6 +24,7 @@ from rigidfluid.taylor_hood.linear_solver.solvers import Solvers
 from rigidfluid.taylor_hood.system.coefficients import coefficients_of
 from rigidfluid.taylor_hood.system.coupled import CoupledMatrix, CoupledSystem, Solution
 from rigidfluid.taylor_hood.system.coupled_projection import CoupledProjection
+from rigidfluid.taylor_hood.system.newtonian import NewtonianOnly
 
 
 class Topology:
@@ -49,7 +50,7 @@ class Topology:
         self.clean()
 
 
-class PetscDiscretisation:
+class PetscDiscretisation(NewtonianOnly):
     """Pᵀ K P on MPI's processes, solved by a Krylov method; motions that are ``prescribed`` (N,) have a prescribed
     twist.
 

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from rigidfluid.backends.scikit_fem import kernels
+from rigidfluid.backends.scikit_fem import kernels, local_stress
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.linear_solver.projection import Masses
 from rigidfluid.taylor_hood.system.coefficients import Coefficients
+from rigidfluid.taylor_hood.system.local_viscosity import StrainRates
 
 
 class Rule(NamedTuple):
@@ -96,6 +98,16 @@ class Terms(NamedTuple):
     grad_div: FloatArray
 
 
+class LocalTerms(NamedTuple):
+    """The terms of a viscosity that varies as the kernels take them, at all quadrature points: ``viscosity`` (N,), its
+    ``slope`` (N,) by log γ̇, the ``direction`` (N, d, d) of the strain rate; and ``grad_div`` (M,)."""
+
+    viscosity: FloatArray
+    slope: FloatArray
+    direction: FloatArray
+    grad_div: FloatArray
+
+
 def reference_tables(dimension: int) -> ReferenceTables:
     """Tabulate scikit-fem's quadratic simplex in ``dimension`` 2 or 3."""
     from skfem import ElementTetP2, ElementTriP2
@@ -136,9 +148,14 @@ class CompiledAssembly:
     def matrix(self, points: FloatArray, coefficients: Coefficients) -> sparse.csr_array:
         c = coefficients
         data = np.zeros(len(self._indices))  # by NumPy, whose large pages cost a tenth of Numba's small ones
-        ratio = c.grad_div / c.viscosity if c.viscosity > 0.0 else c.grad_div
-        terms = Terms(c.inertia, c.viscosity, c.advection, c.flow, ratio)
-        kernels.assemble(data, self._cells(points), self._sparsity, terms, self._tables)
+        cells, uniform = self._cells(points), 0.0 if c.local.varies else c.viscosity
+        ratio = c.grad_div / uniform if uniform > 0.0 else c.grad_div
+        terms = Terms(c.inertia, uniform, c.advection, c.flow, ratio)
+        kernels.assemble(data, cells, self._sparsity, terms, self._tables)
+        if c.local.varies:
+            viscosity, slope = c.viscosity * c.local.relative, c.viscosity * c.local.slope
+            varying = LocalTerms(viscosity, slope, c.local.direction, c.grad_div)
+            local_stress.add_local_stress(data, cells, self._sparsity, varying, self._tables)
         return sparse.csr_array((data, self._indices, self._sparsity.indptr), shape=(self.numbering.unknowns,) * 2)
 
     def masses(self, points: FloatArray) -> Masses:
@@ -159,8 +176,25 @@ class CompiledAssembly:
     def strain_square(self, points: FloatArray, velocity: FloatArray) -> float:
         return float(kernels.strain_square(self._cells(points), self._tables, velocity))
 
+    def strain_rates(self, points: FloatArray, velocity: FloatArray) -> StrainRates:
+        cell, d = self._cell_of_point, self.numbering.dimension
+        tensor, weight = np.empty((len(cell), d, d)), np.empty(len(cell))
+        local_stress.fill_strain_rates(tensor, weight, self._cells(points), self._tables, velocity)
+        return StrainRates(tensor, weight, cell)
+
+    def stress_load(self, points: FloatArray, stress: FloatArray) -> FloatArray:
+        load = np.zeros((self.numbering.nodes, self.numbering.dimension))
+        local_stress.add_stress_load(load, self._cells(points), self._tables, stress)
+        return load
+
     def divergence_square(self, points: FloatArray, velocity: FloatArray, weight: FloatArray) -> float:
         return float(kernels.divergence_square(self._cells(points), self._tables, velocity, weight))
+
+    @cached_property
+    def _cell_of_point(self) -> IntArray:
+        """Cell of each quadrature point (N,): those of straight cells come first."""
+        straight = np.repeat(self._straight, len(self._tables.flat.weight))
+        return np.concatenate([straight, np.repeat(self.numbering.curved_cells, len(self._tables.curved.weight))])
 
     def _cells(self, points: FloatArray) -> Cells:
         n = self.numbering

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar, final
 
+from rigidfluid.core.fluid.material import Material, Newtonian
+from rigidfluid.core.model.generalised_newtonian import GeneralisedNewtonian
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.sparse_backend import SparseBackend
 
@@ -16,6 +18,7 @@ class ScikitFem(SparseBackend):
     """Assembled by one core."""
 
     name: ClassVar[str] = "scikit-fem"
+    materials: ClassVar[tuple[type[Material], ...]] = (Newtonian, GeneralisedNewtonian)
     requires: ClassVar[dict[str, str]] = {"skfem": "scikit-fem", "numba": "numba"}
 
     def assembly(self, numbering: Numbering) -> CompiledAssembly:

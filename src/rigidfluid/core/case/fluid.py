@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from rigidfluid.core.case.expressions import VectorExpression
-from rigidfluid.core.fluid.material import Newtonian
+from rigidfluid.core.fluid.material import Material, Newtonian
 from rigidfluid.core.mesh.size.size_interface import SizeField
 from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.model.selected import Selected
@@ -15,7 +15,7 @@ from rigidfluid.core.scene.fluid_table import FluidTable
 from rigidfluid.core.scene.mesh_tables import MeshTable
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.errors import SceneError
-from rigidfluid.registry import FLUID_BACKEND, SIZE_FIELD, Registry
+from rigidfluid.registry import FLUID_BACKEND, MATERIAL, SIZE_FIELD, Registry
 
 
 def scene_fluid(table: FluidTable, mesh: MeshTable | None, registry: Registry, dimension: int) -> Fluid | NoFluid:
@@ -30,19 +30,19 @@ def scene_fluid(table: FluidTable, mesh: MeshTable | None, registry: Registry, d
         _refuse_flow(table, backend.part)
         return NoFluid(table.density or 0.0, backend, mesh, _size_fields(mesh, registry, dimension))
     condition = f"with backend {backend.part.name!r}"
+    given = {"density": table.density, "viscosity": table.viscosity or table.material}
     raise_all(
         SceneError(f"fluid.{key}", "nothing", f"a number above 0 {condition}", f"Add {key!r}.")
-        for key in ("density", "viscosity")
-        if getattr(table, key) is None
+        for key, value in given.items()
+        if value is None
     )
     if mesh is None:
         raise SceneError("mesh", "nothing", f"a table {condition}", "Add [mesh] with size and size_body.")
     initial = table.initial
     assert table.density is not None
-    assert table.viscosity is not None
     return Fluid(
         density=table.density,
-        material=Newtonian(table.viscosity),
+        material=_material(table, registry, dimension),
         mesh=mesh,
         inertia=table.model == "navier-stokes",
         source=source,
@@ -50,6 +50,17 @@ def scene_fluid(table: FluidTable, mesh: MeshTable | None, registry: Registry, d
         size_fields=_size_fields(mesh, registry, dimension),
         backend=backend,
     )
+
+
+def _material(table: FluidTable, registry: Registry, dimension: int) -> Material:
+    """The fluid's material; raises SceneError for a viscosity beside the table of one."""
+    if table.material is None:
+        assert table.viscosity is not None
+        return Newtonian(table.viscosity)
+    if table.viscosity is not None:
+        remedy = "Leave out one of them; the material's own viscosity is a key of [fluid.material]."
+        raise SceneError("fluid.viscosity", f"{table.viscosity:g} and a material", "one of both", remedy)
+    return build_part(MATERIAL, table.material, "fluid.material", registry, dimension)
 
 
 def _size_fields(mesh: MeshTable | None, registry: Registry, dimension: int) -> tuple[SizeField, ...]:
@@ -65,7 +76,13 @@ def _backend(table: FluidTable, registry: Registry) -> Selected[FluidBackend]:
 
 
 def _refuse_flow(table: FluidTable, backend: type[FluidBackend]) -> None:
-    """Raise SceneError for a force or a flow at the start that there is no fluid for."""
+    """Raise SceneError for a force, a material or a flow at the start that there is no fluid for."""
+    if table.material is not None:
+        found, remedy = (
+            f"{table.material.type!r} with backend {backend.name!r}",
+            "Leave it out, or choose backend = 'scikit-fem'.",
+        )
+        raise SceneError("fluid.material", found, "a backend with a fluid", remedy)
     if table.force is not None:
         found = f"{list(table.force)} with backend {backend.name!r}"
         remedy = "Leave it out, or choose backend = 'scikit-fem'."

@@ -11,7 +11,7 @@ from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.body_tables import BodyTable, MechanismTable
 from rigidfluid.core.scene.contact_tables import ContactTable, InteractionTable
 from rigidfluid.core.scene.domain_table import DomainTable
-from rigidfluid.core.scene.fluid_table import FluidTable
+from rigidfluid.core.scene.fluid_table import FluidTable, MaterialTable
 from rigidfluid.core.scene.joint_tables import JointTable
 from rigidfluid.core.scene.mesh_tables import SizeFieldTable
 from rigidfluid.core.scene.swarm_tables import SwarmShapeTable
@@ -23,6 +23,7 @@ from rigidfluid.registry import (
     FLUID_BACKEND,
     FORCE_LAW,
     JOINT,
+    MATERIAL,
     MECHANISM,
     SIZE_FIELD,
     Kind,
@@ -41,6 +42,7 @@ PART_TABLES: tuple[tuple[str, Kind[Any], Any], ...] = (
     ("domain", DOMAIN, DomainTable),
     ("joint", JOINT, JointTable),
     ("mesh.field", SIZE_FIELD, SizeFieldTable),
+    ("fluid.material", MATERIAL, MaterialTable),
 )
 """Places of tables that name a part, the part's kind, and the model of the table's own keys."""
 

@@ -14,6 +14,7 @@ from rigidfluid.registry import (
     FLUID_BACKEND,
     FORCE_LAW,
     JOINT,
+    MATERIAL,
     MECHANISM,
     SIZE_FIELD,
     Entry,
@@ -30,6 +31,7 @@ _UNNAMED = {
     DOMAIN: ("box",),
     JOINT: (),
     SIZE_FIELD: (),
+    MATERIAL: (),
 }
 
 

@@ -14,7 +14,7 @@ from rigidfluid.core.geometry.arrays import FloatArray
 @dataclass(frozen=True, slots=True)
 class FluidProblem:
     """The fluid's equations: ρ(∂u/∂t + ((u - w)·∇)u) = ∇·σ + source, ∇·u = 0, σ = -pI + μ(∇u + ∇uᵀ), with
-    μ of the ``material``.
+    μ(γ̇) of the ``material``.
 
     With ``inertia`` False the left side is left out (Stokes). Without an open one among the ``conditions`` the pressure
     has zero mean. ``source(time, points)`` (N, d): force on the fluid alone [force/volume]. ``carrier`` (bodies,):

@@ -20,7 +20,8 @@ class Material(ABC):
     name: ClassVar[str]
 
     dynamic_viscosity: float
-    """Viscosity for scales and estimates, positive; where it varies, that at rest [mass·length^(2-d)/time]."""
+    """Viscosity for scales and estimates, positive; where it varies, one of its size in a flow
+    [mass·length^(2-d)/time]."""
 
     @abstractmethod
     def viscosity(self, shear_rate: FloatArray) -> FloatArray:

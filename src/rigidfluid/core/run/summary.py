@@ -133,13 +133,14 @@ def _finite(value: float) -> float | None:
 def reynolds_numbers(model: Model, system: System, speeds: FloatArray) -> dict[str, float | None]:
     """Highest Reynolds number 2 R ρ |v| / μ of any body, with the solid's density and with the fluid's.
 
-    ``speeds`` (n,) are the highest |v|. R is the radius of a ball, of other shapes that of the smallest ball around
-    them. None without a fluid.
+    ``speeds`` (n,) are the highest |v|, and μ is that of the shear rate |v|/2R. R is the radius of a
+    ball, of other shapes that of the smallest ball around them. None without a fluid.
     """
     fluid = system.fluid
     if fluid is None:
         return {"reynolds_solid_density": None, "reynolds": None}
-    per_density = 2.0 * system.bounding_radii * speeds / fluid.material.dynamic_viscosity
+    diameters = 2.0 * system.bounding_radii
+    per_density = diameters * speeds / fluid.material.viscosity(speeds / diameters)
     solid = np.array([body.density for body in model.all_bodies])
     return {
         "reynolds_solid_density": float(np.max(per_density * solid)),

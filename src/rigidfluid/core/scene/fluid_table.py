@@ -10,6 +10,12 @@ from rigidfluid.core.scene.table import OpenTable, Positive
 from rigidfluid.core.scene.vectors import Formulas, Vector
 
 
+class MaterialTable(OpenTable):
+    """The material of the fluid, if its viscosity varies with the shear rate γ̇ = √(½|∇u + ∇uᵀ|²)."""
+
+    type: str = Field(description="Name of a material")
+
+
 class FluidTable(OpenTable):
     """The fluid, and the backend that computes it."""
 
@@ -21,7 +27,12 @@ class FluidTable(OpenTable):
         default=None, description="Density of the fluid; needed by backends with a mesh, else 0 [mass/length^d]"
     )
     viscosity: Positive | None = Field(
-        default=None, description="Dynamic viscosity; needed by backends with a mesh [mass·length^(2-d)/time]"
+        default=None,
+        description="Dynamic viscosity; needed by backends with a mesh, unless there is a `material` "
+        "[mass·length^(2-d)/time]",
+    )
+    material: MaterialTable | None = Field(
+        default=None, description="Material whose viscosity varies; one with `viscosity` if not given"
     )
     gravity: Vector | None = Field(default=None, description="Gravity; zero if not given [length/time²]")
     force: Formulas | None = Field(

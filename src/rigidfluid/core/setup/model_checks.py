@@ -101,7 +101,7 @@ def _check_material(fluid: Fluid) -> None:
     if not isinstance(fluid.material, backend.materials):
         found = f"{type(fluid.material).__name__} with backend {backend.name!r}"
         allowed = ", ".join(material.__name__ for material in backend.materials)
-        raise SceneError("fluid.material", found, allowed, "Choose one of these, or a backend that solves for it.")
+        raise SceneError("fluid.material", found, allowed, "Choose backend = 'scikit-fem', or one of these.")
 
 
 def _check_source(model: Model, fluid: Fluid) -> None:

@@ -23,6 +23,7 @@ from rigidfluid.taylor_hood.linear_solver.solvers import Solvers
 from rigidfluid.taylor_hood.system.coefficients import Coefficients, coefficients_of
 from rigidfluid.taylor_hood.system.constraint import Constraint
 from rigidfluid.taylor_hood.system.coupled import CoupledMatrix, CoupledSystem, Solution
+from rigidfluid.taylor_hood.system.local_viscosity import LocalViscosity, StrainRates
 from rigidfluid.taylor_hood.system.parts import Parts
 from rigidfluid.taylor_hood.system.reduced_matrix import ReducedMatrix
 
@@ -52,6 +53,12 @@ class Assembly(Protocol):
 
     def strain_square(self, points: FloatArray, velocity: FloatArray) -> float:
         """∫ ½ (∇u + ∇uᵀ):(∇u + ∇uᵀ)."""
+
+    def strain_rates(self, points: FloatArray, velocity: FloatArray) -> StrainRates:
+        """∇u + ∇uᵀ at the points by which viscous stress is integrated."""
+
+    def stress_load(self, points: FloatArray, stress: FloatArray) -> FloatArray:
+        """(stress, ∇v) for every nodal test function, (nodes, d), of ``stress`` (N, d, d) at those points."""
 
     def divergence_square(self, points: FloatArray, velocity: FloatArray, weight: FloatArray) -> float:
         """∫ w (∇·u)², ``weight`` w (M,)."""
@@ -133,6 +140,12 @@ class SparseDiscretisation:
     def strain_square(self, points: FloatArray, velocity: FloatArray) -> float:
         return self._assembly.strain_square(points, velocity)
 
+    def strain_rates(self, points: FloatArray, velocity: FloatArray) -> StrainRates:
+        return self._assembly.strain_rates(points, velocity)
+
+    def stress_load(self, points: FloatArray, stress: FloatArray) -> FloatArray:
+        return self._assembly.stress_load(points, stress)
+
     def divergence_square(self, points: FloatArray, velocity: FloatArray, weight: FloatArray) -> float:
         return self._assembly.divergence_square(points, velocity, weight)
 
@@ -184,7 +197,7 @@ class SparseDiscretisation:
         for viscous, solver in self._named_solvers():
             if solver.is_made:
                 origin = self._made_from[viscous]
-                arrays = {name: np.asarray(getattr(origin, name)) for name in _ORIGIN}
+                arrays = {name: np.asarray(getattr(origin, name)) for name in _ORIGIN} | origin.local.memory()
                 found |= {f"{_NAMES[viscous]}_{name}": each for name, each in (arrays | solver.memory()).items()}
         return found
 
@@ -207,6 +220,13 @@ class SparseDiscretisation:
             shapes["corrections"] = len(memory["corrections"]), self.unknowns
         for name, shape in shapes.items():
             refuse_other_rows(memory[name], shape, name)
+        if LocalViscosity.is_in(memory):
+            refuse_other_rows(
+                memory["points"], (self.numbering.vertices + len(self.numbering.on_curves), nodes[1]), "points"
+            )
+            points = len(self._assembly.strain_rates(memory["points"], memory["flow"]).weight)
+            for name, shape in LocalViscosity.shapes(points, len(self.numbering.cells), nodes[1]).items():
+                refuse_other_rows(memory[name], shape, name)
 
     def _named_solvers(self) -> tuple[tuple[bool, LaggedSolver[Parts]], ...]:
         """Each solver, and whether it is the one for viscous matrices."""
@@ -224,6 +244,7 @@ class SparseDiscretisation:
             mass_matrix=memory["mass_matrix"],
             prescribed=self._constraint.prescribed,
             frame=memory["frame"],
+            local=LocalViscosity.recalled(memory),
         )
 
     def _impulse_response(self, assembled: _Assembled, wrenches: FloatArray, tolerance: float) -> FloatArray:

@@ -31,7 +31,7 @@ class CahouetChabard:
         self._which, self._count = _pressures(constraint)
         self._pin = constraint.pressure_pin
         numbering = constraint.surfaces.numbering
-        resisted = 2.0 * coefficients.viscosity + coefficients.grad_div
+        resisted = 2.0 * coefficients.viscosity * coefficients.local.of_cells + coefficients.grad_div
         points = parts.points[: numbering.vertices]
         mass, laplacian = _integrals(numbering.cells, points, self._which, self._count, resisted)
         self._terms: list[Factors] = []

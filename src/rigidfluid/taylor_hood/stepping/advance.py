@@ -12,12 +12,13 @@ from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.model.types import Advance, FluidState, Mesh, Step, Twist, Wrench
 from rigidfluid.taylor_hood.elements.container import container_velocity
+from rigidfluid.taylor_hood.stepping.newton import solve_newton
 from rigidfluid.taylor_hood.stepping.stresslets import body_volumes, stresslets
 from rigidfluid.taylor_hood.system.boundary import FaceFlow, pressure_load
 from rigidfluid.taylor_hood.system.coupled import CoupledMatrix, CoupledSystem, Solution, masses_alone
 from rigidfluid.taylor_hood.system.discretisation import Discretisation, dissipation, kinetic_energy, stress_power
-from rigidfluid.taylor_hood.system.driving import solve_driven
 from rigidfluid.taylor_hood.system.grad_div import grad_div_dissipation
+from rigidfluid.taylor_hood.system.linearised import linearised
 
 _TURNING_TOLERANCE = 1e-3
 """Relative residual of the solve that corrects the advection near bodies which contacts turn around [1]."""
@@ -53,11 +54,11 @@ def advance(equations: Equations, tolerance: float, attempt: FluidState | None) 
         guess = step.kinematics.motion_twist(attempt["twist"])
         velocity, pressure = attempt["velocity"], attempt["pressure"]
         system = replace(system, velocity=velocity, pressure=pressure, twist=guess, again=True)
-    driven = solve_driven(discretisation, system, step.links, step.time, tolerance)
+    matrix, driven = solve_newton(discretisation, system, step.links, step.time, tolerance)
     solution, on_faces = driven.solution, on_faces + driven.load
     if solution.jump_load is not None:
         on_faces = on_faces + solution.jump_load
-    return _measured(equations, solution, on_faces, driven.link_force)
+    return _measured(replace(equations, matrix=matrix), solution, on_faces, driven.link_force)
 
 
 def _measured(equations: Equations, solution: Solution, on_faces: FloatArray, link_force: FloatArray) -> Advance:
@@ -139,7 +140,8 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
     present, before = mesh.geometry, fluid["points_previous"]
     points = present if step.points is None else step.points
     expected = e0 * present + e1 * before if step.points is None else points
-    node_points, flow = numbering.node_points(points), density * extrapolated(fluid, step.extrapolation)
+    expected_velocity = extrapolated(fluid, step.extrapolation)
+    node_points, flow = numbering.node_points(points), density * expected_velocity
     frame = np.zeros(problem.dimension)
     if density > 0.0:
         frame = container_velocity(discretisation.surfaces, step.time, node_points)
@@ -155,6 +157,7 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
         mass_matrix=step.mass_matrix,
         prescribed=step.prescribed,
         frame=frame,
+        local=linearised(discretisation, points, expected_velocity).local,
     )
     if density == 0.0 or d0 == 0.0:
         return matrix

@@ -12,11 +12,11 @@ from rigidfluid.errors import SceneError, StepRejected
 from rigidfluid.taylor_hood.elements.container import container_velocity
 from rigidfluid.taylor_hood.elements.state import resting_state
 from rigidfluid.taylor_hood.stepping.advance import centre_pressure
+from rigidfluid.taylor_hood.stepping.newton import solve_newton
 from rigidfluid.taylor_hood.stepping.transfer import project
 from rigidfluid.taylor_hood.system.boundary import pressure_load
 from rigidfluid.taylor_hood.system.coupled import CoupledMatrix, CoupledSystem
 from rigidfluid.taylor_hood.system.discretisation import Discretisation
-from rigidfluid.taylor_hood.system.driving import solve_driven
 
 STEADY, MOST_ITERATIONS = 1e-8, 200
 """A flow is steady when an iteration changes it by so little, relative in L²; so many are tried."""
@@ -37,7 +37,8 @@ def formula_flow(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pos
 
 
 def steady_flow(target: Discretisation, tolerance: float, mesh: Mesh, pose: Pose, twist: Twist) -> FluidState:
-    """The flow past bodies with these twists that does not change in time, by Picard's iteration from Stokes flow:
+    """The flow past bodies with these twists that does not change in time, by Picard's iteration from Stokes flow
+    (and within it Newton's where the viscosity varies):
 
     ρ((uᵏ·∇)uᵏ⁺¹ + ½(∇·uᵏ)uᵏ⁺¹, v) + μ(∇u + ∇uᵀ, ∇v) + (γ∇·u, ∇·v) - (p, ∇·v) = (f, v), (∇·uᵏ⁺¹, q) = 0, with the
     values at time 0.
@@ -84,7 +85,7 @@ def _picard(target: Discretisation, tolerance: float, system: CoupledSystem) -> 
     frame = container_velocity(target.surfaces, 0.0, matrix.node_points)
     for _ in range(MOST_ITERATIONS):
         try:
-            solution = solve_driven(target, system, NO_LINKS, 0.0, tolerance).solution
+            solution = solve_newton(target, system, NO_LINKS, 0.0, tolerance)[1].solution
         except StepRejected as error:
             raise _not_steady(target, matrix.node_points, system.velocity, str(error)) from None
         change = _relative_norm(target, matrix.points, solution.velocity - system.velocity, solution.velocity)

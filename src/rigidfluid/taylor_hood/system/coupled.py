@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.taylor_hood.system.local_viscosity import UNIFORM, LocalViscosity
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,6 +22,7 @@ class CoupledMatrix:
     ``points`` (vertices + K, d): the mesh's geometry; ``node_points`` (nodes, d). ``advection`` a and ``flow`` c,
     (nodes, d), already hold the density: c is what flows past the container, a what flows past the mesh; the term of
     ∇·c keeps convection from making energy.
+    ``local``: what varies of the viscosity, over ``viscosity``, and how it changes with u.
     ``position``, ``mass_matrix``, ``prescribed`` are of all motions that carry the bodies, as in `Step`. ``masses``: 𝓜,
     the masses alone of a step's matrix, by which bodies and fluid respond to impulses at once; None where not wanted.
     """
@@ -36,6 +38,7 @@ class CoupledMatrix:
     prescribed: BoolArray
     frame: FloatArray
     masses: CoupledMatrix | None = None
+    local: LocalViscosity = UNIFORM
 
 
 def masses_alone(matrix: CoupledMatrix, d0: float) -> CoupledMatrix:
@@ -46,6 +49,7 @@ def masses_alone(matrix: CoupledMatrix, d0: float) -> CoupledMatrix:
         frame=np.zeros_like(matrix.frame),
         inertia=matrix.inertia / d0,
         viscosity=0.0,
+        local=UNIFORM,
         advection=still,
         flow=still,
         mass_matrix=matrix.mass_matrix / d0,

@@ -14,6 +14,7 @@ from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.elements.surfaces import Surfaces
 from rigidfluid.taylor_hood.system.coupled import CoupledMatrix, CoupledSystem, Solution
 from rigidfluid.taylor_hood.system.discretisation import Discretisation, Projection
+from rigidfluid.taylor_hood.system.local_viscosity import StrainRates
 
 _DIVERGENCE = 1.0 / 32.0
 """w: what a residual of divergence weighs relative to one of momentum. With 1 steps in 3D take a sixth more iterations,
@@ -52,6 +53,12 @@ class Dimensionless:
 
     def strain_square(self, points: FloatArray, velocity: FloatArray) -> float:
         return self.inner.strain_square(points, velocity)
+
+    def strain_rates(self, points: FloatArray, velocity: FloatArray) -> StrainRates:
+        return self.inner.strain_rates(points, velocity)
+
+    def stress_load(self, points: FloatArray, stress: FloatArray) -> FloatArray:
+        return self.inner.stress_load(points, stress)
 
     def divergence_square(self, points: FloatArray, velocity: FloatArray, weight: FloatArray) -> float:
         return self.inner.divergence_square(points, velocity, weight)
@@ -109,6 +116,7 @@ class _Scaled:
             mass_matrix=m.mass_matrix * self.twists[:, None] * self.twists / self.force,
             prescribed=m.prescribed,
             frame=m.frame,
+            local=m.local,
         )
 
     def system(self, s: CoupledSystem) -> CoupledSystem:

@@ -7,10 +7,12 @@ from typing import Protocol
 import numpy as np
 
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.fluid.material import Newtonian
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.elements.surfaces import Surfaces
 from rigidfluid.taylor_hood.system.coupled import CoupledMatrix, CoupledSystem, Solution
+from rigidfluid.taylor_hood.system.local_viscosity import StrainRates
 
 
 class Projection(Protocol):
@@ -50,6 +52,13 @@ class Discretisation(Protocol):
     def strain_square(self, points: FloatArray, velocity: FloatArray) -> float:
         """∫ ½ (∇u + ∇uᵀ):(∇u + ∇uᵀ) over this process' cells."""
 
+    def strain_rates(self, points: FloatArray, velocity: FloatArray) -> StrainRates:
+        """∇u + ∇uᵀ at the points by which viscous stress is integrated over this process' cells."""
+
+    def stress_load(self, points: FloatArray, stress: FloatArray) -> FloatArray:
+        """(stress, ∇v) for every nodal test function over this process' cells, (nodes, d), of ``stress`` (N, d, d),
+        symmetric, at those points."""
+
     def divergence_square(self, points: FloatArray, velocity: FloatArray, weight: FloatArray) -> float:
         """∫ w (∇·u)² over this process' cells, ``weight`` w (M,) of each."""
 
@@ -75,12 +84,19 @@ def kinetic_energy(discretisation: Discretisation, points: FloatArray, velocity:
 
 
 def dissipation(discretisation: Discretisation, points: FloatArray, velocity: FloatArray) -> float:
-    """μ ∫ ½ |∇u + ∇uᵀ|² [energy/time]."""
+    """∫ μ ½ |∇u + ∇uᵀ|² [energy/time]."""
+    if not isinstance(discretisation.problem.material, Newtonian):
+        return stress_power(discretisation, points, velocity, velocity)
     rate = discretisation.surfaces.ranks.sum(discretisation.strain_square(points, velocity))
     return discretisation.problem.material.dynamic_viscosity * float(rate)
 
 
 def stress_power(discretisation: Discretisation, points: FloatArray, velocity: FloatArray, other: FloatArray) -> float:
-    """μ ∫ ½ (∇u + ∇uᵀ):(∇v + ∇vᵀ) [energy/time], of the viscous stress of a ``velocity`` u in an ``other`` v."""
+    """∫ μ ½ (∇u + ∇uᵀ):(∇v + ∇vᵀ) [energy/time], of the viscous stress of a ``velocity`` u in an ``other`` v."""
+    material, ranks = discretisation.problem.material, discretisation.surfaces.ranks
+    if not isinstance(material, Newtonian):
+        strain, others = (discretisation.strain_rates(points, each) for each in (velocity, other))
+        viscosity = strain.weight * material.viscosity(strain.shear_rate)
+        return float(ranks.sum(0.5 * np.einsum("n,nac,nac", viscosity, strain.tensor, others.tensor)))
     mean, half = 0.5 * (velocity + other), 0.5 * (velocity - other)
     return dissipation(discretisation, points, mean) - dissipation(discretisation, points, half)

@@ -29,7 +29,8 @@ def grad_div_coefficient(numbering: Numbering, matrix: CoupledMatrix) -> FloatAr
     numbering : Numbering
         The topology.
     matrix : CoupledMatrix
-        Its points (vertices + K, d) [length], flow ρu* (nodes, d) [density · velocity] and viscosity μ.
+        Its points (vertices + K, d) [length], flow ρu* (nodes, d) [density · velocity] and viscosity μ, the mean of
+        each cell.
 
     Notes
     -----
@@ -39,7 +40,8 @@ def grad_div_coefficient(numbering: Numbering, matrix: CoupledMatrix) -> FloatAr
     cells, d = numbering.cells, numbering.dimension
     size = (factorial(d) * np.abs(cell_volumes(matrix.points[: numbering.vertices], cells))) ** (1.0 / d)
     flow = np.linalg.norm(matrix.flow, axis=1)[numbering.cell_nodes].min(axis=1)
-    return np.asarray(np.maximum(_CONVECTION * flow * size - _VISCOSITY * matrix.viscosity, 0.0))
+    taken = _VISCOSITY * matrix.viscosity * matrix.local.of_cells
+    return np.asarray(np.maximum(_CONVECTION * flow * size - taken, 0.0))
 
 
 def grad_div_dissipation(discretisation: Discretisation, matrix: CoupledMatrix, velocity: FloatArray) -> float:

@@ -1,0 +1,101 @@
+"""Runs in fluids whose viscosity varies: their ledger, resumption, and the scenes that are refused."""
+
+import pytest
+from scenes import wet_tables
+
+import rigidfluid
+from rigidfluid.api import Simulation, scene_from_dict
+from rigidfluid.errors import PluginError, RigidfluidError, SceneError
+
+DISK = {"type": "sphere", "radius": 0.12, "position": [0.5, 0.6], "density": 3.0}
+CARREAU = {
+    "type": "carreau",
+    "viscosity": 0.2,
+    "viscosity_infinite": 0.01,
+    "relaxation_time": 1.0,
+    "exponent": 0.4,
+}
+BINGHAM = {"type": "bingham", "viscosity": 0.05, "yield_stress": 0.1, "stress_growth": 5.0}
+
+
+def tables(material, model="navier-stokes", **changes):
+    """A disk that falls in a box, twice as dense as the fluid."""
+    given = wet_tables(DISK, end=0.2, step=0.02, fluid={"gravity": [0.0, -4.0], "model": model}, **changes)
+    if material is not None:
+        del given["fluid"]["viscosity"]
+        given["fluid"]["material"] = material
+    return given
+
+
+@pytest.mark.parametrize("material", [CARREAU, BINGHAM], ids=["carreau", "bingham"])
+@pytest.mark.parametrize("model", ["navier-stokes", "stokes"])
+def test_the_ledger_closes_as_in_a_newtonian_fluid(material, model):
+    ledgers = []
+    for each in (material, None):
+        it = Simulation(scene_from_dict(tables(each, model)))
+        it.go()
+        ledgers.append(it.state.ledger)
+    assert ledgers[0].dissipation > 0.0
+    assert abs(ledgers[0].dissipation / ledgers[1].dissipation - 1.0) > 0.02
+    assert abs(ledgers[0].relative_residual) < 1.5 * abs(ledgers[1].relative_residual) + 1e-4
+
+
+def test_a_resumed_run_goes_on_with_the_same_bits(tmp_path):
+    given = tables(CARREAU, output={"every": 0.1})
+    rigidfluid.run(scene_from_dict(given), tmp_path / "whole")
+    rigidfluid.run(scene_from_dict(given | {"time": {"end": 0.1, "step": 0.02}}), tmp_path / "resumed")
+    rigidfluid.run(scene_from_dict(given), tmp_path / "resumed", resume=True)
+    for name in ("bodies.csv", "energy.csv"):
+        assert (tmp_path / "resumed" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+
+
+def test_a_body_falls_faster_in_what_thins():
+    """Than in a fluid with the viscosity at rest, and slower than in one with that at high shear rates."""
+    speeds = []
+    for viscosity, material in ((0.2, None), (None, CARREAU), (0.01, None)):
+        given = tables(material)
+        if viscosity is not None:
+            given["fluid"]["viscosity"] = viscosity
+        it = Simulation(scene_from_dict(given))
+        it.go()
+        speeds.append(-it.state.twist.velocity[0, 1])
+    assert speeds == sorted(speeds)
+    assert speeds[1] > 1.05 * speeds[0]
+
+
+REFUSED = {
+    "both": ({"viscosity": 0.1}, "fluid.viscosity: found 0.1 and a material; allowed is one of both"),
+    "no fluid": ({"backend": "dry"}, "fluid.material: found 'carreau' with backend 'dry'"),
+    "misspelt type": ({"material": CARREAU | {"type": "careau"}}, "Did you mean 'carreau'"),
+    "other word": ({"material": CARREAU | {"type": "carreau-yasuda"}}, "Did you mean 'carreau'"),
+    "no type": ({"material": {"viscosity": 0.1}}, "fluid.material.type"),
+    "misspelt key": ({"material": CARREAU | {"exponents": 0.4}}, "fluid.material.exponents.*exponent"),
+    "missing key": ({"material": {"type": "carreau", "viscosity": 0.1}}, "fluid.material.relaxation_time"),
+    "negative": ({"material": CARREAU | {"viscosity": -1.0}}, "fluid.material.viscosity"),
+    "key of another": ({"material": CARREAU | {"yield_stress": 1.0}}, "fluid.material.yield_stress"),
+}
+
+
+@pytest.mark.parametrize(("fluid", "found"), REFUSED.values(), ids=REFUSED)
+def test_wrong_tables_are_refused(fluid, found):
+    given = tables(CARREAU)
+    given["fluid"] |= fluid
+    with pytest.raises((SceneError, PluginError), match=found):
+        Simulation(scene_from_dict(given))
+
+
+def test_a_backend_for_newtonian_fluids_refuses_others():
+    given = tables(CARREAU)
+    given["fluid"]["backend"] = "ngsolve"
+    pytest.importorskip("ngsolve")
+    with pytest.raises(RigidfluidError, match=r"fluid\.material: found Carreau with backend 'ngsolve'"):
+        Simulation(scene_from_dict(given))
+
+
+def test_steps_are_expected_to_cost_twice_as_much():
+    costs = []
+    for material in (CARREAU, None):
+        backend = Simulation(scene_from_dict(tables(material))).system.backend
+        costs.append(backend.solver_cost(1000.0, 100.0))
+    assert costs[0].step_seconds == 2.0 * costs[1].step_seconds
+    assert costs[0].memory == costs[1].memory
