@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar, final
 
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.sparse_backend import SparseBackend
 
@@ -16,9 +17,18 @@ class ScikitFem(SparseBackend):
     """Assembled by one core."""
 
     name: ClassVar[str] = "scikit-fem"
+    scalars: ClassVar[bool] = True
     requires: ClassVar[dict[str, str]] = {"skfem": "scikit-fem", "numba": "numba"}
 
     def assembly(self, numbering: Numbering) -> CompiledAssembly:
         from rigidfluid.backends.scikit_fem.assembly import CompiledAssembly
 
         return CompiledAssembly(numbering)
+
+    def scalar_assembly(self, mesh: Mesh) -> CompiledAssembly:
+        from rigidfluid.backends.scikit_fem.assembly import CompiledAssembly
+
+        numbering = self.numbering_of(mesh)
+        if not (isinstance(self._assembly, CompiledAssembly) and self._assembly.numbering is numbering):
+            return self.assembly(numbering)
+        return self._assembly
