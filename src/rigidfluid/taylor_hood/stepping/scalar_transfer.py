@@ -26,7 +26,7 @@ def conserve(
         interpolated = np.clip(moved[name], *bounds)
         found[name], missing = _with_content(after, here, interpolated, content, constant, bounds)
         restored += abs(missing) if name == NAMES[0] else 0.0
-    return {**found, REMESHING: fluid[REMESHING] + restored}
+    return {**found, REMESHING: np.asarray(fluid[REMESHING] + restored)}
 
 
 def _with_content(
