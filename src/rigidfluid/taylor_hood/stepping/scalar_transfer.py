@@ -24,9 +24,19 @@ def conserve(
         content = before.content_by_node(there, values - constant).sum()
         bounds = float(values.min()), float(values.max())
         interpolated = np.clip(moved[name], *bounds)
+        _keep_uniform(before, values, after, interpolated)
         found[name], missing = _with_content(after, here, interpolated, content, constant, bounds)
         restored += abs(missing) if name == NAMES[0] else 0.0
     return {**found, REMESHING: np.asarray(fluid[REMESHING] + restored)}
+
+
+def _keep_uniform(before: ScalarEquations, values: FloatArray, after: ScalarEquations, moved: FloatArray) -> None:
+    """Write on each surface that fixes one and the same value the one that it had: new nodes on it may be outside the
+    old cells."""
+    for surface in np.unique(after.surfaces.owner[after.surfaces.owner >= 0]):
+        held = values[before.surfaces.owner == surface]
+        if len(held) and held.min() == held.max():
+            moved[after.surfaces.owner == surface] = held[0]
 
 
 def _with_content(
