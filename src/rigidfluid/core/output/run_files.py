@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from rigidfluid.core.output.results_folder import Product
 
 PICTURES = (
-    *("speed_field", "streamlines", "vorticity", "pressure", "whole_mesh", "mesh", "smallest_gap", "space", "position"),
-    *("mechanisms", "speed", "gap", "rotation", "torque", "force", "coefficients", "contacts", "joints", "energy"),
-    "step",
+    *("speed_field", "streamlines", "vorticity", "pressure", "scalar", "whole_mesh", "mesh", "smallest_gap"),
+    *("space", "position", "mechanisms", "speed", "gap", "rotation", "torque", "force", "coefficients"),
+    *("contacts", "joints", "energy", "step"),
 )
 """Names of the pictures in the report of a run, each a PNG or SVG file."""
 

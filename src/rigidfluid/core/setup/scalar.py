@@ -108,7 +108,7 @@ def _check_backend(model: Model, fluid: Fluid) -> None:
         found = f"one with backend {fluid.backend.part.name!r}"
         raise SceneError("scalar", found, "a backend that solves for it", "Choose backend = 'scikit-fem'.")
     if model.window is not None:
-        raise SceneError("scalar", "one in a domain with a window", None, "Leave out [domain.window].")
+        raise SceneError("scalar", "one with a window in the domain", None, "Leave out [domain.window].")
     if model.domain.periodic:
         raise SceneError("scalar", "one with periodic surfaces", None, "Give walls, or velocities and pressures.")
 
