@@ -275,11 +275,12 @@ class TaylorHoodBackend(FluidBackend):
 
     def _scalar_equations(self, mesh: Mesh) -> ScalarEquations:
         from rigidfluid.taylor_hood.elements.scalar_surfaces import ScalarSurfaces
+        from rigidfluid.taylor_hood.linear_solver.solved_once import solved_once
         from rigidfluid.taylor_hood.stepping.scalar_step import ScalarEquations
 
         assert self.problem.scalar is not None
         surfaces = ScalarSurfaces(self.problem.scalar, self._any_discretisation(mesh).surfaces, mesh)
-        return ScalarEquations(self.problem.scalar, self.scalar_assembly(mesh), surfaces)
+        return ScalarEquations(self.problem.scalar, self.scalar_assembly(mesh), surfaces, solved_once)
 
     def _with_scalar(self, fluid: FluidState, mesh: Mesh) -> FluidState:
         """The fluid's state at the start, with the scalar if there is one."""
