@@ -8,7 +8,7 @@ import numpy as np
 from scipy import sparse
 
 from rigidfluid.core.fluid.scalar import ScalarProblem
-from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.taylor_hood.elements.face import Face
 from rigidfluid.taylor_hood.elements.facet_integrals import area_at_points
@@ -72,6 +72,11 @@ class ScalarSurfaces:
     def lumped(self) -> IntArray:
         """The bodies that have one value each."""
         return np.array([n for n, one in enumerate(self._problem.conditions) if one.is_lumped], dtype=np.int64)
+
+    @cached_property
+    def is_held(self) -> BoolArray:
+        """Tell whether the value of each node is given (nodes,)."""
+        return np.asarray((self.owner >= 0) & ~np.isin(self.owner, self.lumped))
 
     @cached_property
     def capacities(self) -> FloatArray:

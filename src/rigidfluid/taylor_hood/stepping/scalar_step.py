@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -21,6 +22,7 @@ from rigidfluid.core.fluid.scalar import ScalarProblem
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.scalar_account import ScalarAccount
 from rigidfluid.core.model.types import FluidState, Mesh, Step
+from rigidfluid.taylor_hood.elements.face import Face
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.elements.scalar_surfaces import ScalarSurfaces
 
@@ -74,13 +76,29 @@ class ScalarEquations:
 
 
 @dataclass(frozen=True, eq=False)
+class _Passage:
+    """What fluid carries through faces that hold no value: ``outflow`` (nodes, nodes) of what leaves, by the value
+    there, ``inflow`` (nodes,) of what comes in with a value that is given."""
+
+    outflow: sparse.csr_array
+    inflow: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
 class _System:
-    """A θ = b on all nodes, before any value is held: the ``matrix`` A with what ``open_faces`` carry, ``load`` b, and
-    the history of each lumped body (lumped,)."""
+    """A θ = b on all nodes before any value is held, with ``matrix`` A and ``load`` b: ``sources`` (nodes,) are in it.
+
+    ``passages`` are those through faces, by number, whose outflow is in A; ``given`` (surfaces,): fluxes that are told;
+    ``constant``: c in θ = T - c; ``flow`` (nodes, d) past the mesh.
+    """
 
     matrix: sparse.csr_array
     load: FloatArray
-    history: FloatArray
+    sources: FloatArray
+    passages: dict[int, _Passage]
+    given: FloatArray
+    constant: float
+    flow: FloatArray
 
 
 def start(equations: ScalarEquations, mesh: Mesh) -> FluidState:
@@ -98,98 +116,128 @@ def scalar_step(
     equations: ScalarEquations, fluid: FluidState, mesh: Mesh, step: Step, velocity: FloatArray
 ) -> tuple[FluidState, ScalarAccount]:
     """Arrays of the scalar after a step in which the fluid has got this ``velocity`` (nodes, d), and their account."""
-    problem, surfaces, numbering = equations.problem, equations.surfaces, equations.assembly.numbering
-    points = mesh.geometry if step.points is None else step.points
-    node_points, (d0, d1, d2) = numbering.node_points(points), step.derivative
-    before = fluid["points_previous"]
-    flow = velocity - numbering.node_points(d0 * points + d1 * mesh.geometry + d2 * before)
-    constant = equations.mean(mesh.geometry, fluid["scalar"])
-    now, past = (fluid[name] - constant for name in NAMES)
-    history = d1 * equations.content_by_node(mesh.geometry, now) + d2 * equations.content_by_node(before, past)
-    source = np.zeros(len(node_points))
+    moment = _Moment(equations, fluid, mesh, step)
+    system = _system(moment, velocity)
+    theta = _solution(moment, system)
+    account = _account(moment, system, theta)
+    return {**carried(fluid), "scalar": theta + system.constant, "scalar_previous": fluid["scalar"]}, account
+
+
+@dataclass(frozen=True, eq=False)
+class _Moment:
+    """A ``step`` from ``fluid`` on ``mesh``, and the integrals of its ``equations``."""
+
+    equations: ScalarEquations
+    fluid: FluidState
+    mesh: Mesh
+    step: Step
+
+    @property
+    def points(self) -> FloatArray:
+        """Geometry of the mesh at the end of the step."""
+        return self.mesh.geometry if self.step.points is None else self.step.points
+
+    @cached_property
+    def node_points(self) -> FloatArray:
+        """Its nodes (nodes, d)."""
+        return self.equations.assembly.numbering.node_points(self.points)
+
+    @property
+    def mesh_velocity(self) -> FloatArray:
+        """w at the nodes (nodes, d)."""
+        d0, d1, d2 = self.step.derivative
+        rate = d0 * self.points + d1 * self.mesh.geometry + d2 * self.fluid["points_previous"]
+        return self.equations.assembly.numbering.node_points(rate)
+
+    def history(self, constant: float) -> FloatArray:
+        """d₁(θⁿ, v) + d₂(θⁿ⁻¹, v) of θ = T - ``constant``, each on the mesh of its time (nodes,)."""
+        _, d1, d2 = self.step.derivative
+        meshes, by_node = (self.mesh.geometry, self.fluid["points_previous"]), self.equations.content_by_node
+        now, past = (by_node(points, self.fluid[name] - constant) for points, name in zip(meshes, NAMES, strict=True))
+        return np.asarray(d1 * now + d2 * past)
+
+
+def _system(moment: _Moment, velocity: FloatArray) -> _System:
+    """The equations of a step with the fluid's ``velocity`` (nodes, d) at its end."""
+    equations, step, node_points = moment.equations, moment.step, moment.node_points
+    problem, surfaces = equations.problem, equations.surfaces
+    flow = velocity - moment.mesh_velocity
+    constant = equations.mean(moment.mesh.geometry, moment.fluid["scalar"])
+    sources = np.zeros(len(node_points))
     if problem.source is not None:
-        source = equations.content_by_node(points, problem.source(step.time, node_points))
-    given, given_sums = surfaces.given_fluxes(step.time, node_points)
-    matrix = equations.assembly.scalar_matrix(points, d0, problem.diffusivity, flow)
-    outflow, inflow, carry = _through_faces(equations, step.time, node_points, flow, constant)
-    first = [surfaces.nodes[body][0] for body in surfaces.lumped]
-    of_bodies = -surfaces.capacities * (d1 * now[first] + d2 * past[first])
-    system = _System(sparse.csr_array(matrix + outflow), source + given + inflow - history, of_bodies)
-    held = surfaces.held_values(step.time, node_points)
-    held = np.where(surfaces.owner >= 0, held - constant, 0.0)
-    held[np.isin(surfaces.owner, surfaces.lumped)] = 0.0
-    expected = step.extrapolation @ np.stack([now, past])
-    theta = _solve(equations.solve, surfaces, system, d0, held, expected)
-    reaction = system.matrix @ theta - system.load
-    flux = given_sums + carry(theta)
-    np.add.at(flux, surfaces.owner[surfaces.owner >= 0], reaction[surfaces.owner >= 0])
-    for number, face in enumerate(surfaces.faces, surfaces.first_face):
-        if face.condition.passes:  # what is held there is θ, and the fluid brings the constant with it
-            flux[number] += constant * float(face.inflow(node_points, flow).sum())
-    values = theta + constant
-    content = equations.content_by_node(points, values).sum()
-    earlier = d1 * equations.content_by_node(mesh.geometry, fluid["scalar"]).sum()
-    earlier += d2 * equations.content_by_node(before, fluid["scalar_previous"]).sum()
-    rate = float(d0 * content + earlier)
-    account = ScalarAccount(
-        content=float(content),
-        rate=rate,
-        source=float(source.sum()),
-        residual=rate - float(flux.sum()) - float(source.sum()),
-        least=float(values.min()),
-        greatest=float(values.max()),
-        remeshing=float(fluid[REMESHING]),
-        flux=flux,
-        value=surfaces.means(node_points, values),
-    )
-    return {"scalar": values, "scalar_previous": fluid["scalar"], REMESHING: fluid[REMESHING]}, account
+        sources = equations.content_by_node(moment.points, problem.source(step.time, node_points))
+    load, given = surfaces.given_fluxes(step.time, node_points)
+    load += sources - moment.history(constant)
+    matrix = equations.assembly.scalar_matrix(moment.points, float(step.derivative[0]), problem.diffusivity, flow)
+    passages = {number: _passage(moment, number, face, flow, constant) for number, face in surfaces.open_faces}
+    for passage in passages.values():
+        matrix, load = matrix + passage.outflow, load + passage.inflow
+    return _System(sparse.csr_array(matrix), load, sources, passages, given, constant, flow)
 
 
-def _through_faces(
-    equations: ScalarEquations, time: float, node_points: FloatArray, flow: FloatArray, constant: float
-) -> tuple[sparse.csr_array, FloatArray, Callable[[FloatArray], FloatArray]]:
-    """Carried by the ``flow`` through faces that hold no value: matrix of what leaves, load (nodes,) of what comes in
-    with a value that is given, and the flux of θ (surfaces,) into the fluid by both."""
-    surfaces, count = equations.surfaces, len(node_points)
-    outflow, inflow = sparse.csr_array((count, count)), np.zeros(count)
-    parts: list[tuple[int, sparse.csr_array, float]] = []
-    for number, face in surfaces.open_faces:
-        nodes, value = face.facet_nodes, equations.problem.conditions[number].value
-        shapes, through = face.inflow_at_points(node_points, flow)
-        leaves = -through if value is None else np.maximum(-through, 0.0)
-        each = np.einsum("fq,qi,qj->fij", leaves, shapes, shapes)
-        rows, columns = np.broadcast_arrays(nodes[:, :, None], nodes[:, None, :])
-        matrix = sparse.csr_array((each.ravel(), (rows.ravel(), columns.ravel())), shape=(count, count))
-        brought = 0.0
-        if value is not None:
-            where = np.einsum("qi,fid->fqd", shapes, node_points[nodes])
-            given = value(time, where.reshape(-1, where.shape[2])).reshape(through.shape) - constant
-            load = (np.maximum(through, 0.0) * given) @ shapes
-            np.add.at(inflow, nodes, load)
-            brought = float(load.sum())
-        outflow = outflow + matrix
-        parts.append((number, matrix, brought))
-
-    def carry(theta: FloatArray) -> FloatArray:
-        found = np.zeros(len(surfaces.nodes))
-        for number, matrix, brought in parts:
-            found[number] = brought - float((matrix @ theta).sum())
-        return found
-
-    return outflow, inflow, carry
+def _passage(moment: _Moment, number: int, face: Face, flow: FloatArray, constant: float) -> _Passage:
+    """What the ``flow`` (nodes, d) carries through a face that holds no value."""
+    node_points, nodes = moment.node_points, face.facet_nodes
+    value, count = moment.equations.problem.conditions[number].value, len(node_points)
+    shapes, through = face.inflow_at_points(node_points, flow)
+    leaves, inflow = -through, np.zeros(count)
+    if value is not None:
+        leaves, where = np.maximum(leaves, 0.0), np.einsum("qi,fid->fqd", shapes, node_points[nodes])
+        brought = value(moment.step.time, where.reshape(-1, where.shape[2])).reshape(through.shape) - constant
+        np.add.at(inflow, nodes, (np.maximum(through, 0.0) * brought) @ shapes)
+    each = np.einsum("fq,qi,qj->fij", leaves, shapes, shapes)
+    rows, columns = np.broadcast_arrays(nodes[:, :, None], nodes[:, None, :])
+    outflow = sparse.csr_array((each.ravel(), (rows.ravel(), columns.ravel())), shape=(count, count))
+    return _Passage(outflow, inflow)
 
 
-def _solve(
-    solve: Solve, surfaces: ScalarSurfaces, system: _System, d0: float, held: FloatArray, expected: FloatArray
-) -> FloatArray:
-    """θ (nodes,) with the values that are ``held``, from an ``expected`` one onwards."""
+def _solution(moment: _Moment, system: _System) -> FloatArray:
+    """θ (nodes,), from its extrapolation in time onwards."""
+    surfaces, step = moment.equations.surfaces, moment.step
+    d0, d1, d2 = step.derivative
+    now, past = (moment.fluid[name] - system.constant for name in NAMES)
+    held = surfaces.held_values(step.time, moment.node_points)
+    held = np.where(surfaces.is_held, held - system.constant, 0.0)
     spread, first = surfaces.prolongation, surfaces.first_lumped
-    own = np.zeros(surfaces.unknowns)
-    own[first:] = d0 * surfaces.capacities
+    body = surfaces.representative[first:]
+    own = np.concatenate([np.zeros(first), d0 * surfaces.capacities])
     matrix = sparse.csr_array(spread.T @ system.matrix @ spread + sparse.diags_array(own))
     right_side = spread.T @ (system.load - system.matrix @ held)
-    right_side[first:] += system.history
-    guess = expected[surfaces.representative]
+    right_side[first:] -= surfaces.capacities * (d1 * now[body] + d2 * past[body])
+    guess = (step.extrapolation @ np.stack([now, past]))[surfaces.representative]
     scale = max(float(np.linalg.norm(right_side)), float(np.linalg.norm(matrix @ guess)))
-    residual = right_side - matrix @ guess
-    return np.asarray(spread @ (guess + solve(matrix, residual, _TOLERANCE * scale)) + held)
+    correction = moment.equations.solve(matrix, right_side - matrix @ guess, _TOLERANCE * scale)
+    return np.asarray(spread @ (guess + correction) + held)
+
+
+def _account(moment: _Moment, system: _System, theta: FloatArray) -> ScalarAccount:
+    """Balance at the end of a step whose solution is ``theta`` (nodes,)."""
+    equations, values = moment.equations, theta + system.constant
+    flux, source = _fluxes(moment, system, theta), float(system.sources.sum())
+    content = float(equations.content_by_node(moment.points, values).sum())
+    rate = float(moment.step.derivative[0] * content + moment.history(0.0).sum())
+    return ScalarAccount(
+        content=content,
+        rate=rate,
+        source=source,
+        residual=rate - float(flux.sum()) - source,
+        least=float(values.min()),
+        greatest=float(values.max()),
+        remeshing=float(moment.fluid[REMESHING]),
+        flux=flux,
+        value=equations.surfaces.means(moment.node_points, values),
+    )
+
+
+def _fluxes(moment: _Moment, system: _System, theta: FloatArray) -> FloatArray:
+    """Flux of T into the fluid through each surface (surfaces,): given ones, residuals of rows whose value is fixed,
+    and what the fluid carries; with it goes the constant that ``theta`` (nodes,) is without."""
+    surfaces = moment.equations.surfaces
+    flux, fixed = system.given.copy(), surfaces.owner >= 0
+    np.add.at(flux, surfaces.owner[fixed], (system.matrix @ theta - system.load)[fixed])
+    for number, passage in system.passages.items():
+        flux[number] += passage.inflow.sum() - (passage.outflow @ theta).sum()
+    for number, face in enumerate(surfaces.faces, surfaces.first_face):
+        if face.condition.passes:
+            flux[number] += system.constant * face.inflow(moment.node_points, system.flow).sum()
+    return flux
