@@ -80,7 +80,7 @@ def _cavity(rayleigh: float, divisions: int) -> dict[str, Any]:
     for _ in range(200):
         flow = flow.after(0.005)
         assert flow.advance.scalar is not None
-        worst = max(worst, abs(flow.advance.scalar.residual))
+        worst = max(worst, abs(flow.advance.scalar.imbalance))
     hot, cold, *_ = flow.advance.scalar.flux.tolist()
     spent = time.process_time() - began
     return {"Ra": rayleigh, "divisions": divisions, "hot": hot, "cold": -cold, "residual": worst / hot, "s": spent}
@@ -128,7 +128,7 @@ def _stream(reynolds: float, cells: float) -> dict[str, Any]:
     run.go()
     account = run.state.scalar
     assert account is not None
-    flux, worst = float(account.flux[0]), float(np.abs(run.history.scalar["residual"]).max())
+    flux, worst = float(account.flux[0]), float(np.abs(run.history.scalar["imbalance"]).max())
     spent = time.process_time() - began
     return {
         **{"Re": reynolds, "cells": cells, "Nu": flux * reynolds * PRANDTL / np.pi},
@@ -176,7 +176,7 @@ def _disk_row(name: str, run: Run) -> Iterator[str]:
     put_in = energy["gravity"].max() + energy["body_force"].max()
     yield from (name, f"{-history.bodies['vy'][-1]:.4f}")
     yield from ("" if np.isnan(nusselt) else f"{nusselt:.2f}", f"{value[-1]:+.3f}")
-    yield from (f"{np.abs(totals['residual']).max() / largest:.0e}" if largest > 0.0 else "0",)
+    yield from (f"{np.abs(totals['imbalance']).max() / largest:.0e}" if largest > 0.0 else "0",)
     yield from (f"{totals['remeshing'][-1]:.1e}", f"{history.steps['remeshes'][-1]}")
     yield f"{100.0 * energy['residual'][-1] / put_in:.3f} %"
 
@@ -219,7 +219,7 @@ ABOUT_STREAM = """
 
 A cylinder of diameter 1 is held at 1 in a stream of 0 at Pr = 0.71, in a domain of 80 × 60 diameters with slip at the
 sides. The flow is steady from the start, the temperature after 60 steps of 2. The figures are those of a fit, Nu =
-0.082 Re^½ + 0.734 Re^x, x = 0.05 + 0.226 Re^0.085, to computations in a wider domain (Lange, Durst and Breuer, Int.
+0.082 Re^½ + 0.734 Re^x, x = 0.05 + 0.226 Re^0.085, to their computations (Lange, Durst and Breuer, Int.
 J. Heat Mass Transfer 41, 1998).
 
 """

@@ -157,7 +157,7 @@ def test_the_balance_closes_around_moving_bodies(dimension):
         flow = stir(flow)
         account = flow.advance.scalar
         assert abs(account.rate) > 1.0
-        assert abs(account.residual) < 1e-11 * np.abs(account.flux).max()
+        assert abs(account.imbalance) < 1e-11 * np.abs(account.flux).max()
     radius = 0.1
     area = 2.0 * np.pi * radius if dimension == 2 else 4.0 * np.pi * radius**2
     assert account.flux[1] == pytest.approx(0.3 * area, rel=0.03 if dimension == 2 else 0.35)
@@ -202,7 +202,7 @@ def test_what_flows_out_takes_the_scalar_with_it(value):
     account = flow.advance.scalar
     np.testing.assert_allclose(account.flux, [1.0, -1.0, 0.0, 0.0], atol=1e-6)
     assert account.greatest == pytest.approx(2.0, abs=1e-6)
-    assert abs(account.residual) < 1e-8
+    assert abs(account.imbalance) < 1e-8
 
 
 def test_a_uniform_buoyancy_is_borne_by_the_pressure():

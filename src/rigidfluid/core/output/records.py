@@ -24,7 +24,7 @@ LEDGER_COLUMNS = (
     *("dissipation", "grad_div_loss", "contact_loss", "transfer_loss", "path_friction", "residual"),
     *("residual_start", "residual_remeshing", "residual_contacts", "residual_mesh", "residual_steps"),
 )
-SCALAR_COLUMNS = ("content", "rate", "source", "residual", "least", "greatest", "remeshing")
+SCALAR_COLUMNS = ("content", "rate", "source", "imbalance", "least", "greatest", "remeshing")
 
 
 def columns(dimension: int, coordinates: Iterable[str] = COORDINATES) -> dict[str, tuple[str, ...]]:

@@ -220,7 +220,7 @@ def _account(moment: _Moment, system: _System, theta: FloatArray) -> ScalarAccou
         content=content,
         rate=rate,
         source=source,
-        residual=rate - float(flux.sum()) - source,
+        imbalance=rate - float(flux.sum()) - source,
         least=float(values.min()),
         greatest=float(values.max()),
         remeshing=float(moment.fluid[REMESHING]),
