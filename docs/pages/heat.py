@@ -1,4 +1,4 @@
-"""A transported scalar: natural convection in a cavity, a hot cylinder in a stream, a cold disk that falls."""
+"""A transported scalar: natural convection in a cavity, and a hot cylinder in a stream."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from page_tools import Page, Run, Work, table
+from page_tools import Page, Work, table
 
 import rigidfluid
 from rigidfluid import Scene
 from rigidfluid.api import FluidProblem, Newtonian, NoSlip, Pose, ScikitFem, Simulation
 from rigidfluid.core.fluid.scalar import NO_FLUX, Buoyancy, ScalarCondition, ScalarProblem
-from rigidfluid.core.output.vtu import read_pvd, read_vtu
-from rigidfluid.post.reports.plane import fine_triangles
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.post.reports.scale import HOT_COLOURMAP
-from rigidfluid.post.reports.style import BODY
+from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.elements.sampling import Samples
 from rigidfluid.testing.fluid.boxes import box
 from rigidfluid.testing.fluid.exact import FACES, inward_normal
 from rigidfluid.testing.fluid.flow import Flow
@@ -27,44 +27,36 @@ CAVITY = {1e3: 1.118, 1e4: 2.243, 1e5: 4.519}
 DIVISIONS = (8, 16)
 STREAM = (10.0, 20.0, 40.0)
 CELLS = (0.06, 0.03)
-DISKS = {"as warm as the fluid": None, "held": {"value": -1.0}, "with capacity": {"value": -1.0, "capacity": 1.0}}
+GRID = 41
+"""Points along each side at which temperatures of a picture are."""
 
 
 def page(work: Work) -> Page:
-    """Three cases, two with published figures."""
+    """Nusselt numbers against published ones, and isotherms."""
     rows = work.rows(measured)
     cavity, stream = ([row for row in rows if row["case"] == case] for case in ("cavity", "stream"))
     head = ("Ra", "squares", "Nu hot", "Nu cold", "de Vahl Davis", "difference", "residual", "s")
     text = ABOUT + table(head, map(_cavity_row, cavity))
     head = ("Re", "cells at the cylinder", "Nu", "Lange et al.", "difference", "residual", "s")
     text += ABOUT_STREAM + table(head, map(_stream_row, stream))
-    runs = {name: work.run(name.replace(" ", "_"), falling(table)) for name, table in DISKS.items()}
-    head = (
-        "disk",
-        "speed at the end",
-        "Nu at the end",
-        "its value",
-        "residual",
-        "put back",
-        "new meshes",
-        "energy lost",
-    )
-    text += ABOUT_DISK + table(head, (_disk_row(name, run) for name, run in runs.items())) + AFTER
-    return Page("Heat and buoyancy", text, {"": _picture(runs)})
+    return Page("Heat and buoyancy", text + "\n", {"": _picture([row for row in cavity if "field" in row])})
 
 
 def measured() -> Iterator[dict[str, Any]]:
     """A row for each run of cavity and cylinder."""
     for rayleigh in CAVITY:
         for divisions in DIVISIONS:
-            yield {"case": "cavity", **_cavity(rayleigh, divisions)}
+            row, temperature = _cavity(rayleigh, divisions)
+            field = {"field": np.round(temperature, 4).tolist()} if divisions == DIVISIONS[-1] else {}
+            yield {"case": "cavity", **row, **field}
     for reynolds in STREAM:
         for cells in CELLS:
             yield {"case": "stream", **_stream(reynolds, cells)}
 
 
-def _cavity(rayleigh: float, divisions: int) -> dict[str, Any]:
-    """Nusselt numbers of the hot and the cold side, without a body, on a mesh of squares cut in two."""
+def _cavity(rayleigh: float, divisions: int) -> tuple[dict[str, Any], FloatArray]:
+    """Nusselt numbers of the hot and the cold side, without a body, on a mesh of squares cut in two; and temperatures
+    on a grid."""
     began = time.process_time()
     walls = tuple(NoSlip(face, name, inward_normal(face, 2)) for face, name in enumerate(FACES[:4]))
     held = [
@@ -83,7 +75,10 @@ def _cavity(rayleigh: float, divisions: int) -> dict[str, Any]:
         worst = max(worst, abs(flow.advance.scalar.imbalance))
     hot, cold, *_ = flow.advance.scalar.flux.tolist()
     spent = time.process_time() - began
-    return {"Ra": rayleigh, "divisions": divisions, "hot": hot, "cold": -cold, "residual": worst / hot, "s": spent}
+    grid = np.stack(np.meshgrid(*[np.linspace(0.0, 1.0, GRID)] * 2), axis=2).reshape(-1, 2)
+    samples = Samples(flow.mesh, Numbering.from_mesh(flow.mesh), grid)
+    row = {"Ra": rayleigh, "divisions": divisions, "hot": hot, "cold": -cold, "residual": worst / hot, "s": spent}
+    return row, samples.quadratic(flow.fluid["scalar"]).reshape(GRID, GRID)
 
 
 def stream(reynolds: float, cells: float) -> Scene:
@@ -141,13 +136,6 @@ def lange(reynolds: float) -> float:
     return float(0.082 * reynolds**0.5 + 0.734 * reynolds ** (0.05 + 0.226 * reynolds**0.085))
 
 
-def falling(body: dict[str, float] | None) -> Scene:
-    """The scene cold_disk with new meshes more often, its disk held, with a capacity, or as warm as the fluid."""
-    scene = rigidfluid.load_scene("scenes/cold_disk.toml", ["mesh.remesh_every=1.0"]).to_dict()
-    scene["scalar"]["body"] = [{"on": "disk", "value": 0.0} if body is None else {"on": "disk", **body}]
-    return rigidfluid.scene_from_dict(scene)
-
-
 def _cavity_row(row: dict[str, Any]) -> Iterator[str]:
     wanted = CAVITY[row["Ra"]]
     yield from (
@@ -166,39 +154,15 @@ def _stream_row(row: dict[str, Any]) -> Iterator[str]:
     yield from (f"{100.0 * (row['Nu'] / wanted - 1.0):+.1f} %", f"{row['residual']:.0e}", f"{row['s']:.0f}")
 
 
-def _disk_row(name: str, run: Run) -> Iterator[str]:
-    history = run.history
-    fluxes, totals, energy = history.scalar_fluxes, history.scalar, history.energy
-    disk = fluxes["surface"] == "disk"
-    flux, value = fluxes["flux"][disk], fluxes["value"][disk]
-    largest = np.abs(flux).max()
-    nusselt = flux[-1] / value[-1] / np.pi / 0.0353 if value[-1] else float("nan")
-    put_in = energy["gravity"].max() + energy["body_force"].max()
-    yield from (name, f"{-history.bodies['vy'][-1]:.4f}")
-    yield from ("" if np.isnan(nusselt) else f"{nusselt:.2f}", f"{value[-1]:+.3f}")
-    yield from (f"{np.abs(totals['imbalance']).max() / largest:.0e}" if largest > 0.0 else "0",)
-    yield from (f"{totals['remeshing'][-1]:.1e}", f"{history.steps['remeshes'][-1]}")
-    yield f"{100.0 * energy['residual'][-1] / put_in:.3f} %"
-
-
-def _picture(runs: dict[str, Run]) -> Figure:
-    """Temperature about the two cold disks at four times."""
-    cold = [name for name in runs if DISKS[name] is not None]
-    figure = Figure(figsize=(8.0, 6.5), dpi=120, layout="constrained")
-    panels = figure.subplots(len(cold), 4, squeeze=False)
-    for row, name in zip(panels, cold, strict=True):
-        series = dict(read_pvd(runs[name].folder / "fields.pvd"))
-        for axes, moment in zip(row, (2.0, 6.0, 10.0, 14.0), strict=True):
-            fields = read_vtu(series[min(series, key=lambda at, moment=moment: abs(at - moment))])
-            assert fields.scalar is not None
-            colours = axes.tripcolor(
-                fine_triangles(fields), fields.scalar, shading="gouraud", cmap=HOT_COLOURMAP, vmin=-1.0, vmax=0.0
-            )
-            bodies = runs[name].history.bodies
-            height = float(bodies["y"][np.argmin(np.abs(bodies["time"] - moment))])
-            axes.set(xlim=(0.0, 4.0), ylim=(height - 2.0, height + 4.0), aspect="equal", facecolor=BODY, xticks=[])
-            axes.set_title(f"{name}, {moment:g}", fontsize=8)
-    figure.colorbar(colours, ax=figure.axes, location="bottom", label="scalar", shrink=0.5, aspect=40)
+def _picture(rows: list[dict[str, Any]]) -> Figure:
+    """Isotherms of the cavities on the finer mesh."""
+    figure = Figure(figsize=(8.0, 2.9), dpi=120, layout="constrained")
+    side = np.linspace(0.0, 1.0, GRID)
+    for axes, row in zip(figure.subplots(1, len(rows)), rows, strict=True):
+        levels = axes.contourf(side, side, np.array(row["field"]), np.linspace(0.0, 1.0, 21), cmap=HOT_COLOURMAP)
+        axes.contour(side, side, np.array(row["field"]), np.linspace(0.1, 0.9, 9), colors="white", linewidths=0.5)
+        axes.set(title=f"Ra = {row['Ra']:.0e}", aspect="equal", xticks=[], yticks=[])
+    figure.colorbar(levels, ax=figure.axes, label="temperature", ticks=[0.0, 0.5, 1.0])
     return figure
 
 
@@ -222,21 +186,4 @@ sides. The flow is steady from the start, the temperature after 60 steps of 2. T
 0.082 Re^½ + 0.734 Re^x, x = 0.05 + 0.226 Re^0.085, to their computations (Lange, Durst and Breuer, Int.
 J. Heat Mass Transfer 41, 1998).
 
-"""
-ABOUT_DISK = """
-
-## A cold disk falls
-
-The scene `cold_disk`, with the numbers of Gan et al. (2003) at a Grashof number of 564, on a coarse mesh and with a
-new mesh each unit of time. `with capacity`: the disk has the heat capacity of as much fluid, and one temperature.
-`residual`: the greatest of any step's balance over the greatest flux of the disk. `put back`: content that
-corrections at all new meshes have restored together, in absolute value; the disk's area is 0.79. `energy lost`:
-residual of the account of energy at the end, over the work of gravity and buoyancy.
-
-"""
-AFTER = """
-
-A disk that is held cold draws fluid down and falls faster; one that warms up comes back to the speed of the warm one.
-The paper's regimes, at which the disk moves to a wall or sheds vortices, are not compared: its runs take far longer
-channels and finer meshes than these.
 """

@@ -55,7 +55,8 @@ SUBJECTS = {
         "dumbbell_in_shear": "Two balls on a rod turn in shear: period compared with the exact one",
     },
     "Heat": {
-        "heat": "A heated cavity, a hot cylinder in a stream, a cold disk that falls: Nusselt numbers and balances",
+        "heat": "A heated cavity and a hot cylinder in a stream: Nusselt numbers compared with published ones",
+        "cold_disk": "A cold disk falls: speed, flux and balances with many new meshes",
     },
     "Meshes and distances": {
         "seams": "Disks that cross periodic surfaces: paths from two places and in a longer channel, and momentum",
