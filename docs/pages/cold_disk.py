@@ -78,10 +78,10 @@ def _picture(runs: dict[str, Run]) -> Figure:
     return figure
 
 
-ABOUT = """The scene `cold_disk`, with the numbers of Gan et al. (2003) at a Grashof number of 564, on a coarse mesh and with a
-new mesh each unit of time. `with capacity`: the disk has the heat capacity of as much fluid, and one temperature.
-`imbalance`: the greatest of any step's balance over the greatest flux of the disk. `put back`: content that
-corrections at all new meshes have restored together, in absolute value; the disk's area is 0.79. `energy lost`:
+ABOUT = """The scene `cold_disk`, with the numbers of Gan et al. (2003) at a Grashof number of 564, on a coarse mesh
+and with a new mesh each unit of time. `with capacity`: the disk has the heat capacity of as much fluid, and one
+temperature. `imbalance`: the greatest of any step's balance over the greatest flux of the disk. `put back`: content
+that corrections at all new meshes have restored together, in absolute value; the disk's area is 0.79. `energy lost`:
 residual of the account of energy at the end, over the work of gravity and buoyancy.
 
 """

@@ -13,7 +13,6 @@ from rigidfluid.core.seeding.placement import Others
 from rigidfluid.core.seeding.regions import region_of
 from rigidfluid.core.seeding.swarm import swarm_of
 from rigidfluid.core.setup.changeable import require_changeable
-from rigidfluid.core.setup.fluid import Fluid
 from rigidfluid.core.setup.model import Model
 from rigidfluid.errors import SceneError
 
@@ -21,17 +20,11 @@ from rigidfluid.errors import SceneError
 def check_exchange(model: Model) -> None:
     """Raise SceneError or PluginError for sources and sinks that are wrong, or that bodies of the model cannot have."""
     with all_told() as ask:
-        ask(_refuse_scalar, model)
         ask(require_changeable, model)
         for number, source in enumerate(model.source_tables):
             ask(_check_source, source, number, model)
         for number, sink in enumerate(model.sink_tables):
             ask(_check_sink, sink, f"sink.{number}", model)
-
-
-def _refuse_scalar(model: Model) -> None:
-    if isinstance(model.fluid, Fluid) and model.fluid.scalar is not None:
-        raise SceneError("scalar", "one with bodies that enter or leave", None, "Leave out [[source]] and [[sink]].")
 
 
 def _check_source(table: SourceTable, number: int, model: Model) -> None:

@@ -25,7 +25,6 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Pose, Twist
 from rigidfluid.core.nested.placing import initial_pose, initial_twist
 from rigidfluid.core.setup.contact_laws import interactions_of
-from rigidfluid.core.setup.fluid import Fluid
 from rigidfluid.core.setup.geometry_checks import check_geometry
 from rigidfluid.core.setup.image_checks import check_lengths
 from rigidfluid.core.setup.impact import creeping_resistances
@@ -54,7 +53,7 @@ def assemble(model: Model, check: Callable[[Model, Pose], None] = check_geometry
     check(model, pose)
     window = build_window(model, pose)
     problem = model.fluid.problem(open_wake_end(model.conditions, window), motions, model.domain)
-    if problem is not None and isinstance(model.fluid, Fluid) and model.fluid.scalar is not None:
+    if problem is not None and model.fluid.scalar is not None:
         problem = with_scalar(problem, model.fluid.scalar, model)
     joints = build_joints(model, pose, motions, given, _least_resistance(model))
     motions = motions.starting_with(joints.fitting(motions.pose, motions.twist, 0.0))

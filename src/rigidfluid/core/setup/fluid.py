@@ -151,6 +151,7 @@ class NoFluid:
     mesh: ClassVar[None] = None
     inertia: ClassVar[bool] = False
     inert_density: ClassVar[float] = 0.0
+    scalar: ClassVar[None] = None
 
     def fastest_at_start(self, domain: Domain) -> float:
         """Zero [length/time]."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 import pytest
 
 import rigidfluid
-from rigidfluid.api import FluidBackend, Model, load_results, model_of
+from rigidfluid.api import FloatArray, Fluid, FluidBackend, Model, Scalar, ScalarOnSurface, load_results, model_of
 from rigidfluid.backends.scikit_fem import ScikitFem
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.run.simulation import Simulation
@@ -128,7 +129,6 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
         },
         "window",
     ),
-    ({"sink": [{"on": "top"}]}, "enter or leave"),
 ]
 
 
@@ -136,6 +136,29 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
 def test_what_a_scalar_does_not_go_with_is_refused_by_name(tables: dict[str, Any], message: str) -> None:
     with pytest.raises(SceneError, match=rf"scalar: one with .*{message}"):
         model_of(scene({"boundary": [], "expansion": None}, **tables))
+
+
+def test_bodies_do_not_enter_or_leave_a_fluid_with_a_scalar() -> None:
+    with pytest.raises(SceneError, match=r"scalar: found together with bodies that enter or leave"):
+        model_of(scene(sink=[{"on": "top"}]))
+
+
+def test_a_model_of_objects_has_one_too(tmp_path: Path) -> None:
+    """And a run of it is resumed."""
+    made = model_of(scene(time={"end": 0.02, "step": 0.01}))
+    assert isinstance(made.fluid, Fluid)
+
+    def hot(time: float, points: FloatArray) -> FloatArray:
+        return np.full(len(points), 1.0)
+
+    scalar = Scalar(0.02, hot, expansion=0.05, on_bodies={"disk": ScalarOnSurface(value=hot)})
+    model = replace(made, fluid=replace(made.fluid, scalar=scalar))
+    history = rigidfluid.run(model, tmp_path)
+    assert history.scalar["greatest"][-1] == pytest.approx(1.0)
+    with pytest.raises(SceneError, match=r"scalar.on: found 'dsk'"):
+        replace(made, fluid=replace(made.fluid, scalar=Scalar(0.02, hot, on_bodies={"dsk": ScalarOnSurface(hot)})))
+    with pytest.raises(SceneError, match=r"scalar.initial: found values of shape \(2, 2\)"):
+        replace(made, fluid=replace(made.fluid, scalar=Scalar(0.02, lambda time, points: points)))
 
 
 def test_a_backend_without_scalars_is_refused_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
