@@ -189,20 +189,38 @@ def test_conduction_between_faces_is_linear():
     np.testing.assert_allclose(flow.advance.scalar.flux, [-2.0 * DIFFUSIVITY, 2.0 * DIFFUSIVITY, 0.0, 0.0], atol=1e-10)
 
 
+def stream(speed, *conditions):
+    """Fluid that goes with this speed through a box, whose second face is open; at first it has 1."""
+    along = partial(PrescribedVelocity, value=lambda time, points: np.tile([speed, 0.0], (len(points), 1)))
+    kinds = {"x0": along, "x1": PrescribedPressure, "y0": along, "y1": along}
+    return started(with_scalar(problem(2, kinds), *conditions, initial=constant(1.0)), box(2, 4))
+
+
 @pytest.mark.parametrize("value", [None, 4.0])
 def test_what_flows_out_takes_the_scalar_with_it(value):
-    """Fluid comes in with 2 at a speed of 0.5, and leaves through an open end: 1 goes in and out."""
-    speed = PrescribedVelocity
-    along = partial(speed, value=lambda time, points: np.tile([0.5, 0.0], (len(points), 1)))
-    kinds = {"x0": along, "x1": PrescribedPressure, "y0": along, "y1": along}
-    outlet = NO_FLUX if value is None else held(constant(value))
-    flow = started(with_scalar(problem(2, kinds), held(constant(2.0)), outlet, initial=constant(1.0)), box(2, 4))
-    for _ in range(80):
+    """It comes in with 2 at a speed of 0.5, and leaves through the open end with what it has there."""
+    flow = stream(0.5, held(constant(2.0)), NO_FLUX if value is None else held(constant(value)))
+    for step in range(60):
         flow = flow.after(0.2)
-    account = flow.advance.scalar
+        account = flow.advance.scalar
+        if step > 0:  # before, the fluid has not yet the speed of the face
+            assert account.flux[1] == pytest.approx(-0.5 * account.value[1], rel=1e-6)
+            assert abs(account.imbalance) < 1e-8
+        if step == 2:
+            assert 1.0 < account.value[1] < 1.9
     np.testing.assert_allclose(account.flux, [1.0, -1.0, 0.0, 0.0], atol=1e-6)
     assert account.greatest == pytest.approx(2.0, abs=1e-6)
-    assert abs(account.imbalance) < 1e-8
+
+
+def test_what_comes_in_through_an_open_end_has_the_value_that_is_given():
+    flow = stream(-0.5, NO_FLUX, held(constant(4.0)))
+    for step in range(80):
+        flow = flow.after(0.2)
+        account = flow.advance.scalar
+        if step > 0:
+            assert account.flux[1] == pytest.approx(2.0, rel=1e-6)
+            assert account.flux[0] == pytest.approx(-0.5 * account.value[0], rel=1e-6)
+    assert account.least == pytest.approx(4.0, abs=1e-3)
 
 
 def test_a_uniform_buoyancy_is_borne_by_the_pressure():
