@@ -16,6 +16,7 @@ from rigidfluid.core.setup.checked import Number, Positive, checked
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
+    from rigidfluid.core.model.domain import Domain
     from rigidfluid.core.setup.fluid import Fluid
     from rigidfluid.core.setup.model import Model
 
@@ -77,16 +78,27 @@ def with_scalar(problem: FluidProblem, scalar: Scalar, model: Model) -> FluidPro
     if scalar.expansion is not None and model.gravity is not None:
         buoyancy = Buoyancy(scalar.expansion, scalar.reference, np.array(model.gravity, dtype=float))
     names = [body.name for body in model.all_bodies]
-    bodies = [_condition(scalar.on_bodies.get(n), s.volume) for n, s in zip(names, model.shapes, strict=True)]
-    faces = [_condition(scalar.on_faces.get(condition.name), 0.0) for condition in problem.conditions]
-    found = ScalarProblem(scalar.diffusivity, scalar.initial, (*bodies, *faces), scalar.source, buoyancy)
-    return replace(problem, scalar=found)
+    volumes = [shape.volume for shape in model.shapes] + [0.0] * len(problem.conditions)
+    given = [scalar.on_bodies.get(name) for name in names]
+    given += [scalar.on_faces.get(condition.name) for condition in problem.conditions]
+    conditions = tuple(_condition(*each, model.domain) for each in zip(given, volumes, strict=True))
+    initial, source = (_in_each_image(value, model.domain) for value in (scalar.initial, scalar.source))
+    assert initial is not None
+    return replace(problem, scalar=ScalarProblem(scalar.diffusivity, initial, conditions, source, buoyancy))
 
 
-def _condition(given: ScalarOnSurface | None, volume: float) -> ScalarCondition:
+def _condition(given: ScalarOnSurface | None, volume: float, domain: Domain) -> ScalarCondition:
     if given is None:
         return NO_FLUX
-    return ScalarCondition(given.value, given.flux, None if given.capacity is None else given.capacity * volume)
+    value, flux = (_in_each_image(one, domain) for one in (given.value, given.flux))
+    return ScalarCondition(value, flux, None if given.capacity is None else given.capacity * volume)
+
+
+def _in_each_image(value: ScalarValue | None, domain: Domain) -> ScalarValue | None:
+    """The ``value`` in a domain, the same in its images between periodic surfaces, where a mesh may go on."""
+    if value is None or not domain.periodic:
+        return value
+    return lambda time, points: value(time, domain.wrapped(points))
 
 
 def check_scalar(model: Model, fluid: Fluid) -> None:
@@ -109,8 +121,6 @@ def _check_backend(model: Model, fluid: Fluid) -> None:
         raise SceneError("scalar", found, "a backend that solves for it", "Choose backend = 'scikit-fem'.")
     if model.window is not None:
         raise SceneError("scalar", "one with a window in the domain", None, "Leave out [domain.window].")
-    if model.domain.periodic:
-        raise SceneError("scalar", "one with periodic surfaces", None, "Give walls, or velocities and pressures.")
 
 
 def _check_buoyancy(model: Model, fluid: Fluid, scalar: Scalar) -> None:

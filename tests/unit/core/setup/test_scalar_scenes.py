@@ -116,26 +116,33 @@ def test_what_is_wrong_is_told(scalar: dict[str, Any], tables: dict[str, Any], m
         model_of(scene(scalar, **tables))
 
 
-WINDOW = {"follow": "disk", "direction": "y", "ahead": 1.0, "behind": 0.5}
-REFUSED: list[tuple[dict[str, Any], str]] = [
-    ({"boundary": [{"on": "left", "type": "periodic"}, {"on": "right", "type": "periodic"}]}, "periodic surfaces"),
-    (
-        {
-            "domain": {
-                "lower": [0.0, 0.0],
-                "upper": [1.0, 9.0],
-                "window": WINDOW,
-            }
-        },
-        "window",
-    ),
-]
+HOT = [{"on": "disk", "value": 3.0, "capacity": 2.0}]
 
 
-@pytest.mark.parametrize(("tables", "message"), REFUSED)
-def test_what_a_scalar_does_not_go_with_is_refused_by_name(tables: dict[str, Any], message: str) -> None:
-    with pytest.raises(SceneError, match=rf"scalar: one with .*{message}"):
-        model_of(scene({"boundary": [], "expansion": None}, **tables))
+def test_a_window_is_refused_by_name() -> None:
+    window = {"follow": "disk", "direction": "y", "ahead": 1.0, "behind": 0.5}
+    domain = {"lower": [0.0, 0.0], "upper": [1.0, 9.0], "window": window}
+    with pytest.raises(SceneError, match=r"scalar: one with a window"):
+        model_of(scene({"boundary": [], "expansion": None}, domain=domain))
+
+
+def test_a_disk_that_crosses_periodic_surfaces_takes_its_content_along() -> None:
+    """Of the disk and the fluid together nothing is lost, where nothing goes through the walls."""
+    crossing = scene(
+        {"boundary": [], "expansion": None, "initial": "1 + 0.5*cos(2*pi*x)*y", "body": HOT},
+        fluid={"density": 1.0, "viscosity": 0.5},
+        boundary=[{"on": "left", "type": "periodic", "pressure_drop": 6.0}, {"on": "right", "type": "periodic"}],
+        body=[{"type": "sphere", "name": "disk", "radius": 0.12, "density": 1.0, "position": [0.9, 0.8]}],
+        mesh={"size": 0.2, "size_body": 0.06},
+        time={"end": 1.0, "step": 0.05},
+        output={"every": 1.0},
+    )
+    history = rigidfluid.run(crossing)
+    assert history.bodies["x"][-1] > 1.12
+    disk = history.scalar_fluxes["surface"] == "disk"
+    whole = history.scalar["content"] + 2.0 * np.pi * 0.12**2 * history.scalar_fluxes["value"][disk]
+    assert np.ptp(whole) < 1e-11 * whole[0]
+    assert history.scalar_fluxes["value"][disk][-1] < 2.0
 
 
 def test_bodies_do_not_enter_or_leave_a_fluid_with_a_scalar() -> None:
