@@ -13,7 +13,10 @@ from rigidfluid.core.fluid.conditions import PrescribedPressure, PrescribedVeloc
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.fluid.material import Newtonian
 from rigidfluid.core.fluid.scalar import NO_FLUX, Buoyancy, ScalarCondition, ScalarProblem
+from rigidfluid.core.model.fluid_backend import FluidBackend
+from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Pose
+from rigidfluid.errors import PluginError
 from rigidfluid.testing.fluid.boxes import (
     balls_pose,
     box,
@@ -289,6 +292,25 @@ def test_a_provisional_step_carries_the_scalar_unsolved():
     advance = flow.backend.advance(flow.fluid, flow.mesh, step)
     assert advance.scalar is None
     np.testing.assert_array_equal(advance.fluid["scalar"], flow.fluid["scalar"])
+
+
+class Silent(FluidBackend):
+    """Says that it solves for a scalar, and tells nothing of it."""
+
+    name, scalars = "silent", True
+
+    def advance(self, fluid, mesh, step):
+        found = ScikitFem(ScikitFem.Options(), self.problem).advance(fluid, mesh, step)
+        return replace(found, scalar=None)
+
+    initial = response = transfer = fields = probe = unknowns = forget = None
+
+
+def test_a_backend_that_tells_nothing_of_its_scalar_is_refused():
+    flow = started(with_scalar(problem(2)), box(2, 2))
+    backend = Silent(PartOptions(), flow.backend.problem)
+    with pytest.raises(PluginError, match=r"advance: found scalar"):
+        backend.advance(flow.fluid, flow.mesh, flow.step_after(0.1))
 
 
 def test_where_two_faces_meet_the_first_one_holds_the_value():
