@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Literal, get_args
 
 import matplotlib
 import numpy as np
@@ -15,7 +15,7 @@ from rigidfluid.post.reports.moment import Moment, moment
 from rigidfluid.post.reports.paths import draw_paths
 from rigidfluid.post.reports.pictures import flow_picture, mesh_picture, streamline_picture
 from rigidfluid.post.reports.results import Results, read_results
-from rigidfluid.post.reports.scale import QUANTITIES, Quantity, Scale
+from rigidfluid.post.reports.scale import Quantity, Scale
 from rigidfluid.post.reports.shared_scale import shared_scale
 from rigidfluid.post.reports.space import flow_space_picture
 from rigidfluid.post.reports.style import STYLE, new_figure
@@ -62,7 +62,7 @@ def _paths(results: Results, plane: ViewPlane) -> Figure:
 
 
 def _flow(results: Results, plane: ViewPlane, shown: Shown) -> Figure:
-    scale = shared_scale(results, shown.view if shown.view in QUANTITIES else "speed", plane, None)
+    scale = shared_scale(results, shown.view if shown.view in get_args(Quantity) else "speed", plane, None)
     outputs = np.array([time for time, _ in results.series])
     moments = [moment(results, int(np.argmin(np.abs(outputs - time))), plane, 0) for time in shown.times]
     figure = _panels(results, plane, moments, scale, shown.view)

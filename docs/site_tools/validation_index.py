@@ -55,6 +55,10 @@ SUBJECTS = {
         "swimmer_near_wall": "A swimmer approaches a wall: a case of the paper",
         "dumbbell_in_shear": "Two balls on a rod turn in shear: period compared with the exact one",
     },
+    "Heat": {
+        "heat": "A heated cavity and a hot cylinder in a stream: Nusselt numbers compared with published ones",
+        "cold_disk": "A cold disk falls: speed, flux and balances with many new meshes",
+    },
     "Meshes and distances": {
         "seams": "Disks that cross periodic surfaces: paths from two places and in a longer channel, and momentum",
         "enter_and_leave": "Ten bodies enter a box of fluid and leave it: account of energy and area",

@@ -102,6 +102,7 @@ from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.core.setup.model import ConditionMaker, ContactStepping, Model
 from rigidfluid.core.setup.pair_forces import PairForce
 from rigidfluid.core.setup.rigid_body import JoinedBodies, PlacedMechanism, RigidBody
+from rigidfluid.core.setup.scalar import Scalar, ScalarOnSurface
 from rigidfluid.detectors.brute_force import BruteForceDetector, BruteForceOptions
 from rigidfluid.detectors.ellipsoid import EllipsoidDetector
 from rigidfluid.detectors.facets import FacetDetector
@@ -339,6 +340,8 @@ __all__ = [
     "SameOrientation",
     "SamePoint",
     "SavedRun",
+    "Scalar",
+    "ScalarOnSurface",
     "Scene",
     "SceneError",
     "SceneErrors",

@@ -21,6 +21,7 @@ from rigidfluid.taylor_hood.system.coupled import CoupledMatrix
 from rigidfluid.taylor_hood.system.discretisation import Discretisation
 
 if TYPE_CHECKING:
+    from rigidfluid.taylor_hood.stepping.scalar_step import ScalarAssembly, ScalarEquations
     from rigidfluid.taylor_hood.system.dimensionless import Dimensionless
 
 _PROVISIONAL = 1e-5
@@ -74,6 +75,10 @@ class TaylorHoodBackend(FluidBackend):
         """The same for flows that do not change in time, in case another solver serves where nothing has inertia."""
         return self.discretise(numbering, mesh, prescribed)
 
+    def scalar_assembly(self, mesh: Mesh) -> ScalarAssembly:
+        """The integrals of a transported scalar on this topology; asked of backends with `scalars` alone."""
+        raise NotImplementedError
+
     @abstractmethod
     def drop_factors(self) -> None:
         """Forget what the solutions of earlier systems have left behind."""
@@ -93,7 +98,7 @@ class TaylorHoodBackend(FluidBackend):
             flow = steady_flow(*given) if start == "steady" else formula_flow(*given)
             made = flow, kinetic_energy(target, mesh.geometry, flow["velocity"])
         self.drop_factors()
-        return made
+        return self._with_scalar(made[0], mesh), made[1]
 
     @final
     def struck(self, mesh: Mesh, pose: Pose, twist: Twist, step: Step) -> tuple[FluidState, float, Twist]:
@@ -103,16 +108,19 @@ class TaylorHoodBackend(FluidBackend):
         motions = Twist(*np.split(step.prescribed_twist, [self.problem.dimension], axis=1))
         if not step.prescribed.all():
             fluid, _ = initial(self._projecting_discretisation(mesh), *given, twist)
-            motions = self._advanced(fluid, mesh, step, max(self.options.tolerance, _IMPULSE)).twist
+            motions = self._advanced(
+                self._with_scalar(fluid, mesh), mesh, step, max(self.options.tolerance, _IMPULSE)
+            ).twist
         bodies = step.kinematics.component_twist(motions)
         fluid, kinetic = struck(self._projecting_discretisation(mesh), *given, bodies)
         self.drop_factors()
-        return fluid, kinetic, motions
+        return self._with_scalar(fluid, mesh), kinetic, motions
 
     @final
     def advance(self, fluid: FluidState, mesh: Mesh, step: Step) -> Advance:
         tolerance = max(self.options.tolerance, _PROVISIONAL if step.provisional else 0.0)
-        return self._advanced(fluid, mesh, step, tolerance)
+        advanced = self._advanced(fluid, mesh, step, tolerance)
+        return advanced if self.problem.scalar is None else self._with_scalar_step(advanced, fluid, mesh, step)
 
     @final
     def response(self, fluid: FluidState, mesh: Mesh, step: Step, impulses: FloatArray) -> Response:
@@ -128,6 +136,7 @@ class TaylorHoodBackend(FluidBackend):
         from rigidfluid.taylor_hood.system.discretisation import kinetic_energy
 
         numbering, present = self.numbering_of(old), self._any_discretisation(old)
+        scalar_before = None if self.problem.scalar is None else self._scalar_equations(old)
         before = kinetic_energy(present, old.geometry, fluid["velocity"])
         earlier = kinetic_energy(present, fluid["points_previous"], fluid["velocity_previous"])
         target = self._projecting_discretisation(new)
@@ -135,6 +144,10 @@ class TaylorHoodBackend(FluidBackend):
         flow = Flow(fluid, old, numbering, (before, earlier), present.surfaces.pressure_drops)
         moved = transfer(flow, target, self.options.tolerance, new)
         self.drop_factors()
+        if scalar_before is not None:
+            from rigidfluid.taylor_hood.stepping.scalar_transfer import conserve
+
+            moved = {**moved, **conserve(scalar_before, fluid, old, self._scalar_equations(new), moved, new)}
         return moved, before - kinetic_energy(target, new.geometry, moved["velocity"])
 
     @final
@@ -163,7 +176,8 @@ class TaylorHoodBackend(FluidBackend):
     def fields(self, fluid: FluidState, mesh: Mesh) -> Fields:
         numbering = self.numbering_of(mesh)
         pressure = numbering.interpolate_to_nodes(fluid["pressure"])
-        return Fields(numbering.node_points(mesh.geometry), numbering.cell_nodes, fluid["velocity"], pressure)
+        points = numbering.node_points(mesh.geometry)
+        return Fields(points, numbering.cell_nodes, fluid["velocity"], pressure, fluid.get("scalar"))
 
     @final
     def probe(self, fluid: FluidState, mesh: Mesh, points: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -197,7 +211,12 @@ class TaylorHoodBackend(FluidBackend):
     def state_shapes(self, mesh: Mesh, pose: Pose) -> dict[str, tuple[int, ...]]:
         from rigidfluid.taylor_hood.elements.state import state_shapes
 
-        return state_shapes(Numbering.from_mesh(mesh), mesh, pose)
+        shapes, numbering = {}, Numbering.from_mesh(mesh)
+        if self.problem.scalar is not None:
+            from rigidfluid.taylor_hood.stepping.scalar_step import NAMES, REMESHING
+
+            shapes = {**dict.fromkeys(NAMES, (numbering.nodes,)), REMESHING: ()}
+        return {**state_shapes(numbering, mesh, pose), **shapes}
 
     @final
     def joined(self, states: Sequence[FluidState], parts: Sequence[Mesh], mesh: Mesh) -> FluidState:
@@ -253,6 +272,33 @@ class TaylorHoodBackend(FluidBackend):
         if self._latest_matrix is None or any(map(operator.is_not, self._latest_matrix[0], asked)):
             self._latest_matrix = asked, step_matrix(discretisation, fluid, mesh, _on_mesh(step, mesh))
         return self._latest_matrix[1]
+
+    def _scalar_equations(self, mesh: Mesh) -> ScalarEquations:
+        from rigidfluid.taylor_hood.elements.scalar_surfaces import ScalarSurfaces
+        from rigidfluid.taylor_hood.linear_solver.solved_once import solved_once
+        from rigidfluid.taylor_hood.stepping.scalar_step import ScalarEquations
+
+        assert self.problem.scalar is not None
+        surfaces = ScalarSurfaces(self.problem.scalar, self._any_discretisation(mesh).surfaces, mesh)
+        return ScalarEquations(self.problem.scalar, self.scalar_assembly(mesh), surfaces, solved_once)
+
+    def _with_scalar(self, fluid: FluidState, mesh: Mesh) -> FluidState:
+        """The fluid's state at the start, with the scalar if there is one."""
+        if self.problem.scalar is None:
+            return fluid
+        from rigidfluid.taylor_hood.stepping.scalar_step import start
+
+        return {**fluid, **start(self._scalar_equations(mesh), mesh)}
+
+    def _with_scalar_step(self, advanced: Advance, fluid: FluidState, mesh: Mesh, step: Step) -> Advance:
+        """A step with that of the scalar; one that will be solved again has none."""
+        from rigidfluid.taylor_hood.stepping.scalar_step import carried, scalar_step
+
+        if step.provisional:
+            return replace(advanced, fluid={**advanced.fluid, **carried(fluid)})
+        equations = self._scalar_equations(mesh)
+        scalar, account = scalar_step(equations, fluid, mesh, step, advanced.fluid["velocity"])
+        return replace(advanced, fluid={**advanced.fluid, **scalar}, scalar=account)
 
     def _projecting_discretisation(self, mesh: Mesh) -> Discretisation:
         return self._discretisation(mesh, np.ones(self.problem.motions, dtype=bool))

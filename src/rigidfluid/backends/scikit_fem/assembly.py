@@ -88,6 +88,14 @@ class Sparsity(NamedTuple):
     first_pressure: int
 
 
+class ScalarTerms(NamedTuple):
+    """Coefficients of the matrix of a scalar: ``flow`` c (nodes, d) that carries it, past the mesh."""
+
+    inertia: float
+    diffusivity: float
+    flow: FloatArray
+
+
 class Terms(NamedTuple):
     """`Coefficients` as the kernels take them; ``grad_div`` (M,) over the viscosity, if there is any."""
 
@@ -172,6 +180,17 @@ class CompiledAssembly:
     def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:
         load: FloatArray = kernels.apply_mass(self._cells(points), self._tables, field)
         return load
+
+    def scalar_matrix(
+        self, points: FloatArray, inertia: float, diffusivity: float, flow: FloatArray
+    ) -> sparse.csr_array:
+        """Matrix of inertia (T, v) - (c T, ∇v) + diffusivity (∇T, ∇v), with the ``flow`` c (nodes, d)."""
+        from rigidfluid.backends.scikit_fem.scalar_kernels import assemble_scalar  # few scenes have a scalar
+
+        pattern, data = self._pattern, np.zeros(len(self._pattern.around))
+        terms = ScalarTerms(inertia, diffusivity, flow)
+        assemble_scalar(data, self._cells(points), pattern, terms, self._tables)
+        return sparse.csr_array((data, pattern.around, pattern.starts), shape=(self.numbering.nodes,) * 2)
 
     def strain_square(self, points: FloatArray, velocity: FloatArray) -> float:
         return float(kernels.strain_square(self._cells(points), self._tables, velocity))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, ClassVar, final
 
 from rigidfluid.core.fluid.material import Material, Newtonian
 from rigidfluid.core.model.generalised_newtonian import GeneralisedNewtonian
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.sparse_backend import SparseBackend
 
@@ -19,9 +20,18 @@ class ScikitFem(SparseBackend):
 
     name: ClassVar[str] = "scikit-fem"
     materials: ClassVar[tuple[type[Material], ...]] = (Newtonian, GeneralisedNewtonian)
+    scalars: ClassVar[bool] = True
     requires: ClassVar[dict[str, str]] = {"skfem": "scikit-fem", "numba": "numba"}
 
     def assembly(self, numbering: Numbering) -> CompiledAssembly:
         from rigidfluid.backends.scikit_fem.assembly import CompiledAssembly
 
         return CompiledAssembly(numbering)
+
+    def scalar_assembly(self, mesh: Mesh) -> CompiledAssembly:
+        from rigidfluid.backends.scikit_fem.assembly import CompiledAssembly
+
+        numbering = self.numbering_of(mesh)
+        if not (isinstance(self._assembly, CompiledAssembly) and self._assembly.numbering is numbering):
+            return self.assembly(numbering)
+        return self._assembly

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import lru_cache, singledispatch
 from typing import NamedTuple
 
@@ -27,14 +28,16 @@ from rigidfluid.core.scene.body_tables import BodyTable
 from rigidfluid.core.scene.contact_tables import ContactTable
 from rigidfluid.core.scene.domain_table import DomainTable
 from rigidfluid.core.scene.mesh_tables import AUTO
+from rigidfluid.core.scene.scalar_table import ScalarTable
 from rigidfluid.core.scene.scene import Scene
+from rigidfluid.core.setup.components import component_bodies
 from rigidfluid.core.setup.contact_laws import ContactLaw, told_apart
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.core.setup.made_bodies import check_made_bodies
 from rigidfluid.core.setup.model import ContactStepping, Model
 from rigidfluid.core.setup.pair_forces import PairForce
 from rigidfluid.core.setup.rigid_body import JoinedBodies, PlacedMechanism, RigidBody
-from rigidfluid.errors import ArgumentError
+from rigidfluid.errors import ArgumentError, SceneError
 from rigidfluid.registry import BODY, DETECTOR, DOMAIN, Registry
 
 Case = Scene | Model
@@ -119,6 +122,8 @@ class _Parts(NamedTuple):
 
 def _compose(scene: Scene, registry: Registry, parts: _Parts) -> Model:
     domain, bodies, mechanisms, fluid, laws, pair_forces, joints = parts
+    if scene.scalar is not None:
+        fluid = _with_scalar(fluid, scene.scalar, domain, (*bodies, *component_bodies(mechanisms, scene.dimension)))
     shapes = [body.shape for body in bodies] + [one.shape for each in mechanisms for one in each.mechanism.components]
     detector, why = _detector(scene.contact, registry, (shapes, domain), fluid.backend.part.wet, laws)
     model = Model(
@@ -148,6 +153,17 @@ def _compose(scene: Scene, registry: Registry, parts: _Parts) -> Model:
 
         check_exchange(told)
     return told
+
+
+def _with_scalar(fluid: Fluid | NoFluid, table: ScalarTable, domain: Domain, bodies: Sequence[RigidBody]) -> Fluid:
+    """The fluid with the scalar that it carries along; raises SceneError where there is none to do so."""
+    from rigidfluid.core.case.scalar import scene_scalar  # few scenes have one
+
+    if isinstance(fluid, NoFluid):
+        found = f"one with backend {fluid.backend.part.name!r}"
+        raise SceneError("scalar", found, "a backend with a fluid", "Choose backend = 'scikit-fem'.")
+    names = [body.name for body in bodies]
+    return replace(fluid, scalar=scene_scalar(table, domain.pieces, names, domain.dimension))
 
 
 def _names_used(scene: Scene) -> set[str]:

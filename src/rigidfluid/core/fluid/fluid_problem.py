@@ -8,6 +8,7 @@ from typing import Literal
 
 from rigidfluid.core.fluid.conditions import BoundaryCondition
 from rigidfluid.core.fluid.material import Material
+from rigidfluid.core.fluid.scalar import ScalarProblem
 from rigidfluid.core.geometry.arrays import FloatArray
 
 
@@ -20,6 +21,7 @@ class FluidProblem:
     has zero mean. ``source(time, points)`` (N, d): force on the fluid alone [force/volume]. ``carrier`` (bodies,):
     the motion that carries each body, its own if not given. ``initial``: the flow at the start, at rest but
     for what bodies set in motion, steady, or the nearest to ``initial(0, points)`` (N, d) without divergence.
+    ``scalar``: what the fluid carries along, if anything.
     """
 
     dimension: int
@@ -31,6 +33,7 @@ class FluidProblem:
     source: Callable[[float, FloatArray], FloatArray] | None = None
     carrier: tuple[int, ...] = ()
     initial: Literal["rest", "steady"] | Callable[[float, FloatArray], FloatArray] = "rest"
+    scalar: ScalarProblem | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "carrier", self.carrier or tuple(range(self.bodies)))

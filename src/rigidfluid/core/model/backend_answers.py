@@ -10,6 +10,7 @@ import numpy as np
 from rigidfluid.core.geometry.answers import refuse_no_number, refuse_other_rows, refuse_other_shape, refuse_others
 from rigidfluid.core.geometry.value_types import describe
 from rigidfluid.core.geometry.wrong import Wrong
+from rigidfluid.core.model.scalar_account import ScalarAccount
 from rigidfluid.core.model.types import Advance, Fields, Response, Step, Twist
 
 _POWERS = ("boundary_power", "spurious_flux", "grad_div", "source_power")
@@ -63,6 +64,17 @@ def advance(answer: Any, part: Any, fluid: Any, mesh: Any, step: Step) -> None:
         refuse_other_rows(answer.stresslet, (count, d, d), "stresslet", shorter=True)
     if answer.stress_power is not None:
         refuse_no_number(answer.stress_power, "stress_power", shorter=True)
+    if part.scalars and part.problem.scalar is not None and not step.provisional:
+        _scalar_account(answer.scalar, len(part.problem.scalar.conditions))
+
+
+def _scalar_account(answer: Any, surfaces: int) -> None:
+    """Refuse what is no account of a scalar with so many ``surfaces``."""
+    refuse_others(answer, ScalarAccount, "scalar")
+    for name in ("content", "rate", "source", "imbalance", "least", "greatest", "remeshing"):
+        refuse_no_number(getattr(answer, name), f"scalar.{name}", shorter=True)
+    for name in ("flux", "value"):
+        refuse_other_rows(getattr(answer, name), (surfaces,), f"scalar.{name}", shorter=True)
 
 
 def response(answer: Any, part: Any, fluid: Any, mesh: Any, step: Step, impulses: Any) -> None:
@@ -80,6 +92,8 @@ def fields(answer: Any, *_: Any) -> None:
         refuse_other_rows(
             getattr(answer, name), (count, *np.shape(answer.points)[1:])[: 1 + (name != "pressure")], name
         )
+    if answer.scalar is not None:
+        refuse_other_rows(answer.scalar, (count,), "scalar")
     refuse_other_shape(answer.cells, np.shape(answer.cells), "cells", "iu")
 
 

@@ -55,6 +55,8 @@ class FluidBackend(Part):
     held_fluxes: ClassVar[bool] = False
     """Tell whether it finds the drop of pressure for a flux that is held through periodic faces, and measures both by
     `driving`."""
+    scalars: ClassVar[bool] = False
+    """Tell whether it solves for a transported scalar; else such scenes are refused."""
     stresslets: ClassVar[bool] = False
     """Tell whether it gives stresslets of bodies to a `Step` that wants them."""
     state_format: ClassVar[str | None] = None

@@ -10,6 +10,7 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.reduced_model import Coupling
+from rigidfluid.core.model.scalar_account import ScalarAccount
 from rigidfluid.core.model.tangential_springs import TangentialSprings
 from rigidfluid.core.model.types import Contacts, FluidState, Mesh, Pose, Twist, Wrench
 
@@ -127,7 +128,8 @@ class State:
     from outside on the n bodies from now on, zero on those that are not free; None if nothing was applied yet.
     ``jumped``: the latest tick at which a prescribed velocity was changed by a jump, None before the first.
     ``springs``: those along the surfaces of contacts, None where there are none. ``stresslet`` (n, d, d): by the fluid
-    [force·length]; None at the start, and where it is not wanted.
+    [force·length]; None at the start, and where it is not wanted. ``scalar``: account of the transported scalar over
+    the latest step; None at the start, and without one.
     """
 
     tick: int
@@ -155,6 +157,7 @@ class State:
     jumped: int | None = None
     springs: TangentialSprings | None = None
     stresslet: FloatArray | None = None
+    scalar: ScalarAccount | None = None
 
     @property
     def is_on_new_mesh(self) -> bool:

@@ -16,6 +16,7 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.model.kinematics import EACH_ITS_OWN, Kinematics
 from rigidfluid.core.model.ranks import ALONE, Ranks
+from rigidfluid.core.model.scalar_account import ScalarAccount
 
 if TYPE_CHECKING:
     from rigidfluid.core.model.force_law import ForceLaw
@@ -338,7 +339,7 @@ class Advance:
     a past of a fluid with inertia; else None [energy/time].
     ``stresslet`` (n, d, d): symmetric first moment of the fluid's tractions on each body about its centre, ∮ ½ (a σ·n +
     σ·n a) with n into the fluid and its trace, for a pressure of zero mean in an enclosed flow; None where it is not
-    wanted [force·length].
+    wanted [force·length]. ``scalar``: account of a transported scalar, None without one, and in provisional steps.
     """
 
     fluid: FluidState
@@ -354,14 +355,16 @@ class Advance:
     source_power: float = 0.0
     stress_power: float | None = None
     stresslet: FloatArray | None = None
+    scalar: ScalarAccount | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Fields:
     """Nodal fields for output: ``points`` (N, d), quadratic ``cells`` (M, 6 | 10) in VTK's order, ``velocity`` (N, d),
-    ``pressure`` (N,)."""
+    ``pressure`` (N,), and a transported ``scalar`` (N,), if there is one."""
 
     points: FloatArray
     cells: IntArray
     velocity: FloatArray
     pressure: FloatArray
+    scalar: FloatArray | None = None

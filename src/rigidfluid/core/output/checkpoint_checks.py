@@ -57,6 +57,7 @@ _STATE: Shapes = {
     },
     **{"hydrodynamic_wrench": _wrench("n"), "contact_wrench": _wrench("n"), "applied": _wrench("n")},
     "stresslet": "ndd",
+    "scalar": {"flux": "r", "value": "r"},
     "motions": {
         **{"pose": _pose("N"), "twist": _twist("N")},
         **{"contact": _wrench("N"), "hydrodynamic": _wrench("N")},

@@ -29,6 +29,8 @@ class FluidFields(Described, Fields):
         (N, d) [length/time].
     pressure : FloatArray
         (N,) [force/length^(d-1)].
+    scalar : FloatArray or None
+        (N,) of a scene with a table ``[scalar]`` [scalar].
     time : float
         Time of the state [time].
     """

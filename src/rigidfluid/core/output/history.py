@@ -88,7 +88,8 @@ class History(Described):
         Parameters
         ----------
         name : str
-            ``bodies``, ``contacts``, ``joints``, ``energy``, ``steps``, ``probes``, ``driving`` or ``stresslets``.
+            ``bodies``, ``contacts``, ``joints``, ``energy``, ``steps``, ``probes``, ``driving``, ``stresslets``,
+            ``scalar`` or ``scalar_fluxes``.
         only : iterable of str, optional
             The columns that are wanted; all if not given. A folder that an earlier version has written has all that it
             knew.
@@ -194,6 +195,16 @@ class History(Described):
     def stresslets(self) -> dict[str, NDArray[Any]]:
         """The table of stresslets.csv: a row per body and accepted step, with ``output.stresslets``."""
         return self.table("stresslets")
+
+    @property
+    def scalar(self) -> dict[str, NDArray[Any]]:
+        """The table of scalar.csv: a row per accepted step, with a table ``[scalar]``."""
+        return self.table("scalar")
+
+    @property
+    def scalar_fluxes(self) -> dict[str, NDArray[Any]]:
+        """The table of scalar_fluxes.csv: a row per surface and accepted step, with a table ``[scalar]``."""
+        return self.table("scalar_fluxes")
 
 
 def _rows(path: Path) -> list[Row]:

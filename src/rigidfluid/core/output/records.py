@@ -24,6 +24,7 @@ LEDGER_COLUMNS = (
     *("dissipation", "grad_div_loss", "contact_loss", "transfer_loss", "path_friction", "residual"),
     *("residual_start", "residual_remeshing", "residual_contacts", "residual_mesh", "residual_steps"),
 )
+SCALAR_COLUMNS = ("content", "rate", "source", "imbalance", "least", "greatest", "remeshing")
 
 
 def columns(dimension: int, coordinates: Iterable[str] = COORDINATES) -> dict[str, tuple[str, ...]]:
@@ -41,6 +42,8 @@ def columns(dimension: int, coordinates: Iterable[str] = COORDINATES) -> dict[st
         "probes": ("time", "step", "probe", *position, *velocity, "pressure"),
         "driving": ("time", "step", "surface", "flux", "pressure_drop"),
         "stresslets": ("time", "step", "body", *stresslet),
+        "scalar": ("time", "step", *SCALAR_COLUMNS),
+        "scalar_fluxes": ("time", "step", "surface", "flux", "value"),
     }
 
 
@@ -88,6 +91,8 @@ def records(
         "probes": list(_probe_rows(system, probes, state, stamp)),
         "driving": list(_driving_rows(system, state, stamp)),
         "stresslets": list(_stresslet_rows(system, state, stamp)),
+        "scalar": [] if state.scalar is None else [(*stamp, *(getattr(state.scalar, name) for name in SCALAR_COLUMNS))],
+        "scalar_fluxes": list(_scalar_flux_rows(system, state, stamp)),
     }
 
 
@@ -175,3 +180,10 @@ def _stresslet_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:
         upper = np.triu_indices(system.dimension)
         for name, stresslet in zip(system.surfaces, state.stresslet, strict=False):
             yield (*stamp, name, *stresslet[upper].tolist())
+
+
+def _scalar_flux_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:
+    """A row for each surface, bodies first, where a scalar is transported."""
+    if state.scalar is not None:
+        for name, flux, value in zip(system.surfaces, state.scalar.flux, state.scalar.value, strict=True):
+            yield (*stamp, name, float(flux), float(value))

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from rigidfluid.core.output.results_folder import Product
 
 PICTURES = (
-    *("speed_field", "streamlines", "vorticity", "pressure", "whole_mesh", "mesh", "smallest_gap", "space", "position"),
-    *("mechanisms", "speed", "gap", "rotation", "torque", "force", "coefficients", "contacts", "joints", "energy"),
-    *("step", "statistics"),
+    *("speed_field", "streamlines", "vorticity", "pressure", "scalar", "whole_mesh", "mesh", "smallest_gap"),
+    *("space", "position", "mechanisms", "speed", "gap", "rotation", "torque", "force", "coefficients"),
+    *("contacts", "joints", "energy", "step", "statistics"),
 )
 """Names of the pictures in the report of a run, each a PNG or SVG file."""
 
@@ -22,6 +22,8 @@ TABLES = {
     "probes": "the fluid at the points of `output.probes`",
     "driving": "flux and drop of pressure of each pair of periodic surfaces",
     "stresslets": "a row per body with `output.stresslets`",
+    "scalar": "content, balance and extremes of the scalar of a table `[scalar]`",
+    "scalar_fluxes": "its flux into the fluid and mean value on each body and each surface of the domain",
 }
 """Names of a run's tables, and what is in each."""
 

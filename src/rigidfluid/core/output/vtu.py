@@ -39,11 +39,13 @@ def write_vtu(path: Path, fields: Fields) -> None:
 
 def nodal_arrays(fields: Fields) -> dict[str, FloatArray]:
     """Arrays at the nodes as ParaView takes them: ``velocity`` (N, 3), ``pressure`` (N,) and ``vorticity``, (N,) in 2D
-    and (N, 3) in 3D."""
+    and (N, 3) in 3D, and ``scalar`` (N,) if there is one."""
+    scalar = {} if fields.scalar is None else {"scalar": fields.scalar}
     return {
         "velocity": in_space(fields.velocity),
         "pressure": fields.pressure,
         "vorticity": np.squeeze(nodal_vorticity(fields), axis=1 if fields.points.shape[1] == 2 else ()),
+        **scalar,
     }
 
 
@@ -124,6 +126,7 @@ def read_vtu(path: Path) -> Fields:
             cells=connectivity,
             velocity=arrays["velocity"].reshape(nodes, 3)[:, :dimension].astype(np.float64),
             pressure=arrays["pressure"].reshape(nodes).astype(np.float64),
+            scalar=arrays["scalar"].reshape(nodes).astype(np.float64) if "scalar" in arrays else None,
         )
 
 

@@ -86,6 +86,7 @@ def attempt(tools: Tools, state: State, level: int, path: BodyStep, provisional:
         gaps=place.gaps,
         hydrodynamic_wrench=advance.hydrodynamic_wrench,
         stresslet=advance.stresslet,
+        scalar=advance.scalar,
         contact_wrench=_mean(path.impulse, end.size),
         motions=_motions(path, step, advance, end.size),
         link=_link_load(system, path, step, advance),

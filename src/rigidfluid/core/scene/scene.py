@@ -16,6 +16,7 @@ from rigidfluid.core.scene.fluid_table import FluidTable
 from rigidfluid.core.scene.joint_tables import JointTable
 from rigidfluid.core.scene.mesh_tables import MeshTable
 from rigidfluid.core.scene.run_tables import OutputTable, TimeTable
+from rigidfluid.core.scene.scalar_table import ScalarTable
 from rigidfluid.core.scene.swarm_tables import SwarmTable
 from rigidfluid.core.scene.table import Table
 from rigidfluid.core.scene.vectors import DIMENSION
@@ -48,6 +49,7 @@ class Scene(Described, Table):
 
     scene: SceneTable
     fluid: FluidTable
+    scalar: ScalarTable | None = Field(default=None, description="A scalar that the fluid carries along")
     domain: DomainTable
     boundary: tuple[Annotated[BoundaryTable, Field(discriminator="type")], ...] = Field(
         default=(),

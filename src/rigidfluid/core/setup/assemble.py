@@ -35,6 +35,7 @@ from rigidfluid.core.setup.masses import Masses, masses_of
 from rigidfluid.core.setup.model import Model
 from rigidfluid.core.setup.prescribed import PrescribedMotion, prescribed_motion
 from rigidfluid.core.setup.rigid_body import Start
+from rigidfluid.core.setup.scalar import with_scalar
 from rigidfluid.core.setup.window import build_window, open_wake_end
 
 _MOST_PAIRS = 1000
@@ -52,6 +53,8 @@ def assemble(model: Model, check: Callable[[Model, Pose], None] = check_geometry
     check(model, pose)
     window = build_window(model, pose)
     problem = model.fluid.problem(open_wake_end(model.conditions, window), motions, model.domain)
+    if problem is not None and model.fluid.scalar is not None:
+        problem = with_scalar(problem, model.fluid.scalar, model)
     joints = build_joints(model, pose, motions, given, _least_resistance(model))
     motions = motions.starting_with(joints.fitting(motions.pose, motions.twist, 0.0))
     loads = build_loads(model, masses, motions, joints)

@@ -11,12 +11,14 @@ if TYPE_CHECKING:
 
 
 def require_changeable(model: Model) -> None:
-    """Raise SceneError for a model whose bodies cannot change: joints, mechanisms, springs and windows go by them."""
+    """Raise SceneError for a model whose bodies cannot change: joints, mechanisms, springs, windows and
+    scalars go by them."""
     found = {
         "mechanism": model.mechanisms,
         "joint": model.joints,
         "body.spring or body.free": [body for body in model.bodies if body.linked_to_ground],
         "domain.window": model.window,
+        "scalar": model.fluid.scalar,
         "boundary.type = 'periodic' in a fluid": model.wet and model.domain.periodic,
     }
     for key, value in found.items():

@@ -54,6 +54,14 @@ def _fluid(problem: FluidProblem) -> Iterator[Feature]:
     yield Feature("force on the fluid", problem.source is not None, f"fluid.force is {given}")
     start = problem.initial if isinstance(problem.initial, str) else "given by expressions"
     yield Feature("flow at the start", start != "rest", f"fluid.initial is {start}")
+    yield _scalar(problem)
+
+
+def _scalar(problem: FluidProblem) -> Feature:
+    if problem.scalar is None:
+        return Feature("scalar in the fluid", False, "no table [scalar]")
+    felt = "not felt by the flow" if problem.scalar.buoyancy is None else "with buoyancy"
+    return Feature("scalar in the fluid", True, felt)
 
 
 def _mesh(system: System, mesh: MeshTable | None) -> Iterator[Feature]:

@@ -21,6 +21,7 @@ from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.model.types import Film
 from rigidfluid.core.scene.mesh_tables import MeshTable
 from rigidfluid.core.setup.checked import AnyRow, NotNegative, Positive, checked
+from rigidfluid.core.setup.scalar import Scalar
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import FLUID_BACKEND, Registry
 
@@ -57,6 +58,8 @@ class Fluid:
         Objects that say how fine cells are, by place and flow.
     backend : Selected
         Class that solves its equations, and its options; `scikit-fem` if not given.
+    scalar : Scalar, optional
+        What it carries along, as temperature; nothing if not given.
     """
 
     density: Positive
@@ -67,6 +70,7 @@ class Fluid:
     initial: Literal["rest", "steady"] | Value = "rest"
     size_fields: Annotated[tuple[SizeField, ...], AnyRow] = ()
     backend: Selected[FluidBackend] = field(default_factory=lambda: installed_backend("scikit-fem"))
+    scalar: Scalar | None = None
 
     @property
     def insertion(self) -> MeshTable:
@@ -147,6 +151,7 @@ class NoFluid:
     mesh: ClassVar[None] = None
     inertia: ClassVar[bool] = False
     inert_density: ClassVar[float] = 0.0
+    scalar: ClassVar[None] = None
 
     def fastest_at_start(self, domain: Domain) -> float:
         """Zero [length/time]."""

@@ -22,6 +22,7 @@ from rigidfluid.core.setup.mesh_checks import check_cells, check_mesh_table
 from rigidfluid.core.setup.pair_forces import check_pair_forces
 from rigidfluid.core.setup.placed_bodies import check_names, doubled
 from rigidfluid.core.setup.quick_strokes import refuse_quick_mechanisms
+from rigidfluid.core.setup.scalar import check_scalar
 from rigidfluid.errors import SceneError
 
 if TYPE_CHECKING:
@@ -89,6 +90,7 @@ def _check_fluid(model: Model, fluid: Fluid) -> None:
         allowed = f"'rest' with backend {fluid.backend.part.name!r}"
         raise SceneError("fluid.initial", fluid.initial, allowed, "Leave it out, or choose backend = 'scikit-fem'.")
     fluid.fastest_at_start(model.domain)  # says where it is not finite
+    check_scalar(model, fluid)
     _check_mesh(model, fluid.mesh)
     check_oblique(model)
     check_inflow(model)

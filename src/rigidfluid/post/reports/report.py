@@ -42,7 +42,7 @@ from rigidfluid.post.reports.pictures import (
 from rigidfluid.post.reports.results import Results, read_results
 from rigidfluid.post.reports.rotation_plot import rotation_plot, torque_plot, turning
 from rigidfluid.post.reports.scale import QUANTITIES
-from rigidfluid.post.reports.shared_scale import shared_scales
+from rigidfluid.post.reports.shared_scale import shared_scale, shared_scales
 from rigidfluid.post.reports.space import dry_space_picture, flow_space_picture
 from rigidfluid.post.reports.style import STYLE
 from rigidfluid.post.reports.view_plane import PlaneName, ViewPlane, view_plane
@@ -109,6 +109,9 @@ def _flow_pictures(results: Results, plane: ViewPlane, body: int | None) -> Iter
     caption = f"Vorticity, positive where the fluid turns counter-clockwise.{where}"
     yield "vorticity", caption, flow_picture(shown, turns), raster
     yield "pressure", f"Dynamic pressure.{where}", flow_picture(shown, pressure), raster
+    if shown[-1].section.fields.scalar is not None:
+        caption = f"The scalar that the fluid carries along.{where}"
+        yield "scalar", caption, flow_picture(shown, shared_scale(results, "scalar", plane, body)), raster
     yield "whole_mesh", f"The whole mesh at the last output time.{where}", whole_mesh_picture(shown[-1], speed), raster
     if where:
         yield (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Literal
 
 import numpy as np
 from matplotlib import colormaps
@@ -15,9 +15,10 @@ from matplotlib.figure import Figure
 
 from rigidfluid.core.geometry.arrays import FloatArray
 
-COLOURMAP, SIGNED_COLOURMAP = "viridis", "RdBu_r"
-Quantity = Literal["speed", "vorticity", "pressure"]
-QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
+COLOURMAP, SIGNED_COLOURMAP, HOT_COLOURMAP = "viridis", "RdBu_r", "inferno"
+Quantity = Literal["speed", "vorticity", "pressure", "scalar"]
+QUANTITIES: tuple[Quantity, ...] = ("speed", "vorticity", "pressure")
+"""Those that every fluid has."""
 
 
 _MOST, _USUAL = 99.9, 80.0
@@ -40,19 +41,23 @@ class Scale:
     def fit(cls, quantity: Quantity, values: Sequence[FloatArray], areas: Sequence[FloatArray]) -> Scale:
         """Fit the range to values (K,), each on an area (K,).
 
-        Speeds have even steps from zero to the highest. Vorticity and pressure are symmetric about zero and strong,
-        even without bound, in small places: almost all of the area has colours of its own, weak values among them.
+        Speeds have even steps from zero to the highest, scalars from the lowest. Vorticity and pressure are symmetric
+        about zero and strong, even without bound, in small places: almost all of the area has colours of its own, weak
+        values among them.
         """
         size, weights = np.abs(np.concatenate(values)), np.concatenate(areas)
         if quantity == "speed":
             return cls(quantity, 0.0, float(size.max()), float(size.max()))
+        if quantity == "scalar":
+            lowest, highest = (float(end(np.concatenate(values))) for end in (np.min, np.max))
+            return cls(quantity, lowest, highest, highest)
         usual, highest = np.percentile(size, (_USUAL, _MOST), weights=weights, method="inverted_cdf").tolist()
         return cls(quantity, -highest, highest, max(usual, _WEAKEST * highest))
 
     @property
     def map(self) -> Colormap:
         """Matplotlib's colours."""
-        return colormaps[COLOURMAP if self.quantity == "speed" else SIGNED_COLOURMAP]
+        return colormaps[{"speed": COLOURMAP, "scalar": HOT_COLOURMAP}.get(self.quantity, SIGNED_COLOURMAP)]
 
     @property
     def norm(self) -> Normalize:
@@ -69,8 +74,8 @@ class Scale:
         """Draw the colour bar next to the panels."""
         extend = "both" if self.lowest < 0.0 else "max"
         area = "force/area" if dimension == 3 else "force/length"
-        unit = {"speed": "length/time", "vorticity": "1/time", "pressure": area}[self.quantity]
-        label = f"{self.quantity} [{unit}]"
+        unit = {"speed": "length/time", "vorticity": "1/time", "pressure": area}.get(self.quantity)
+        label = self.quantity if unit is None else f"{self.quantity} [{unit}]"
         colours = ScalarMappable(self.norm, self.map)
         bar = figure.colorbar(colours, ax=list(panels), label=label, shrink=0.8, extend=extend)
         if isinstance(self.norm, AsinhNorm):

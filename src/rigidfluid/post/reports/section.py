@@ -11,6 +11,7 @@ from matplotlib.tri import Triangulation
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.types import Fields
 from rigidfluid.core.output.cell_gradients import vorticity
+from rigidfluid.errors import OutputError
 from rigidfluid.post.reports.plane import cell_by_cell, corner_triangles, fine_triangles
 from rigidfluid.post.reports.raster import Grid, Sampling
 from rigidfluid.post.reports.scale import Quantity
@@ -62,6 +63,15 @@ class Section:
                 return self.vorticity
             case "pressure":
                 return self.fields.pressure
+            case "scalar":
+                return self._scalar
+
+    @property
+    def _scalar(self) -> FloatArray:
+        """The scalar that the fluid carries along, (N,); raises OutputError where there is none."""
+        if self.fields.scalar is None:
+            raise OutputError("scalar", "none in these fields", "the fields of a scene with [scalar]", "Show another.")
+        return self.fields.scalar
 
     def triangles(self, values: FloatArray) -> tuple[Triangulation, FloatArray]:
         """Triangles in the plane and values at their corners, of ``values`` (N,) at the nodes, or (M, b) at those of

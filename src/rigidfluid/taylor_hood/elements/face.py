@@ -79,11 +79,20 @@ class Face:
 
         ``node_points``, ``velocity`` u and ``carrier`` c (nodes, d) [length, length/time].
         """
+        shapes, inflow = self.inflow_at_points(node_points, carrier)
+        u = shapes @ velocity[self.facet_nodes]
+        return 0.5 * float(np.sum(np.sum(u * u, axis=2) * inflow))
+
+    def inflow_at_points(self, node_points: FloatArray, carrier: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Gauss' rule on each facet: the nodes' functions at its points, (q, 3 | 6), and c·n dA there, (F, q), n into
+        the fluid.
+
+        ``node_points``, ``carrier`` c (nodes, d) [length, length/time].
+        """
         shapes, area = area_at_points(node_points[self.facet_nodes])
         if self._normal is not None:
             area = np.linalg.norm(area, axis=2, keepdims=True) * self._normal
-        u, c = (shapes @ field[self.facet_nodes] for field in (velocity, carrier))
-        return 0.5 * float(np.sum(np.sum(u * u, axis=2) * np.sum(c * area, axis=2)))
+        return shapes, np.asarray(np.sum((shapes @ carrier[self.facet_nodes]) * area, axis=2))
 
     def in_and_out(self, node_points: FloatArray, velocity: FloatArray) -> FloatArray:
         """Inflow and outflow (negative), (2,) [length^d/time]; the sum of both, and 0, of a curved face.

@@ -82,7 +82,7 @@ def _measured(equations: Equations, solution: Solution, on_faces: FloatArray, li
         link_force=link_force,
         spurious_flux=at_faces.spurious_flux(),
         grad_div=grad_div_dissipation(discretisation, matrix, velocity),
-        source_power=_source_power(discretisation, matrix, velocity, step.time),
+        source_power=_source_power(equations, velocity),
         stress_power=stress_power(discretisation, matrix.points, velocity, mean) if begins else None,
         stresslet=_stresslets(equations, solution) if step.stresslets else None,
     )
@@ -121,13 +121,25 @@ def _twist(solution: Solution, dimension: int) -> Twist:
     return Twist(solution.twist[:, :dimension], solution.twist[:, dimension:])
 
 
-def _source_power(discretisation: Discretisation, matrix: CoupledMatrix, velocity: FloatArray, time: float) -> float:
-    """∫ f·u of the source f [energy/time]."""
-    source, ranks = discretisation.problem.source, discretisation.surfaces.ranks
-    if source is None:
+def _source_power(equations: Equations, velocity: FloatArray) -> float:
+    """∫ f·u of the force f on the fluid [energy/time]."""
+    force, discretisation = _force(equations), equations.discretisation
+    if force is None:
         return 0.0
-    load = discretisation.mass_times(matrix.points, source(time, matrix.node_points))
-    return float(ranks.sum(np.sum(velocity * load)))
+    load = discretisation.mass_times(equations.matrix.points, force)
+    return float(discretisation.surfaces.ranks.sum(np.sum(velocity * load)))
+
+
+def _force(equations: Equations) -> FloatArray | None:
+    """Force on the fluid at the nodes (nodes, d), of the problem's source and of buoyancy [force/volume]; None without
+    any."""
+    problem, step, fluid = equations.discretisation.problem, equations.step, equations.fluid
+    force = None if problem.source is None else problem.source(step.time, equations.matrix.node_points)
+    if problem.scalar is None or problem.scalar.buoyancy is None:
+        return force
+    expected = step.extrapolation @ np.stack([fluid["scalar"], fluid["scalar_previous"]])
+    buoyancy = problem.scalar.buoyancy.force(problem.density, expected)
+    return buoyancy if force is None else force + buoyancy
 
 
 def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, step: Step) -> CoupledMatrix:
@@ -177,8 +189,9 @@ def _system(equations: Equations, on_faces: FloatArray) -> CoupledSystem:
     e0, e1 = step.extrapolation
     history = d1 * fluid["velocity"] + d2 * fluid["velocity_previous"]
     density_of_load = -problem.inert_density * history - matrix.inertia * matrix.frame
-    if problem.source is not None:
-        density_of_load += problem.source(step.time, node_points)
+    force = _force(equations)
+    if force is not None:
+        density_of_load += force
     expected = step.kinematics.motion_twist(e0 * fluid["twist"] + e1 * fluid["twist_previous"])
     twist, moved = prescribed_part(step)
     return CoupledSystem(

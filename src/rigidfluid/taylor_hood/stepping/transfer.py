@@ -64,6 +64,8 @@ def transfer(flow: Flow, target: Discretisation, tolerance: float, new: Mesh) ->
         if old.periods is not None:
             carried += on_nodes.periods @ flow.drops(pressure)
         moved["pressure" + suffix] = carried[: numbering.vertices]
+        if "scalar" in fluid:
+            moved["scalar" + suffix] = on_nodes.quadratic(fluid["scalar" + suffix])
         velocity = on_nodes.quadratic(fluid["velocity" + suffix])
         position, twist = moved["position" + suffix], fluid["twist" + suffix]
         every = np.ones(len(twist), dtype=bool)

@@ -1,0 +1,173 @@
+"""A scalar that the fluid of a model carries along, and how it becomes equations."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.fluid.scalar import NO_FLUX, Buoyancy, ScalarCondition, ScalarProblem, ScalarValue
+from rigidfluid.core.scene.all_errors import all_told
+from rigidfluid.core.scene.spelling import suggestion
+from rigidfluid.core.setup.checked import Number, Positive, checked
+from rigidfluid.errors import SceneError
+
+if TYPE_CHECKING:
+    from rigidfluid.core.model.domain import Domain
+    from rigidfluid.core.setup.fluid import Fluid
+    from rigidfluid.core.setup.model import Model
+
+
+@checked
+class ScalarOnSurface:
+    """The scalar on a surface: at most one of a value and a flux, and for bodies a capacity.
+
+    Parameters
+    ----------
+    value : callable, optional
+        ``value(time, points)`` (N,) that is held; of a body with a capacity the one at the start [scalar].
+    flux : callable, optional
+        ``flux(time, points)`` (N,) into the fluid [scalar·length/time].
+    capacity : float, optional
+        Heat capacity of a body with one value over that of as much fluid [1].
+    field : str
+        Key of the scene's table that asks for it, for messages.
+    """
+
+    value: ScalarValue | None = None
+    flux: ScalarValue | None = None
+    capacity: Positive | None = None
+    field: str = "scalar"
+
+
+@checked
+class Scalar:
+    """A scalar that the fluid carries along: ∂T/∂t + ∇·(u T) = ∇·(κ∇T) + s.
+
+    Parameters
+    ----------
+    diffusivity : float
+        κ [length²/time].
+    initial : callable
+        ``initial(0, points)`` (N,) [scalar].
+    source : callable, optional
+        s, ``source(time, points)`` (N,) [scalar/time].
+    expansion : float, optional
+        β of Boussinesq's approximation; the flow does not feel the scalar if not given [1/scalar].
+    reference : float
+        Value without buoyancy [scalar].
+    on_faces, on_bodies : mapping of str to ScalarOnSurface
+        Conditions by the names of surfaces of the domain and of bodies; nothing goes through all others.
+    """
+
+    diffusivity: Positive
+    initial: ScalarValue
+    source: ScalarValue | None = None
+    expansion: Number | None = None
+    reference: Number = 0.0
+    on_faces: Mapping[str, ScalarOnSurface] = field(default_factory=dict)
+    on_bodies: Mapping[str, ScalarOnSurface] = field(default_factory=dict)
+
+
+def with_scalar(problem: FluidProblem, scalar: Scalar, model: Model) -> FluidProblem:
+    """The equations of a fluid with those of its scalar."""
+    buoyancy = None
+    if scalar.expansion is not None and model.gravity is not None:
+        buoyancy = Buoyancy(scalar.expansion, scalar.reference, np.array(model.gravity, dtype=float))
+    names = [body.name for body in model.all_bodies]
+    volumes = [shape.volume for shape in model.shapes] + [0.0] * len(problem.conditions)
+    given = [scalar.on_bodies.get(name) for name in names]
+    given += [scalar.on_faces.get(condition.name) for condition in problem.conditions]
+    conditions = tuple(_condition(*each, model.domain) for each in zip(given, volumes, strict=True))
+    initial, source = (_in_each_image(value, model.domain) for value in (scalar.initial, scalar.source))
+    assert initial is not None
+    return replace(problem, scalar=ScalarProblem(scalar.diffusivity, initial, conditions, source, buoyancy))
+
+
+def _condition(given: ScalarOnSurface | None, volume: float, domain: Domain) -> ScalarCondition:
+    if given is None:
+        return NO_FLUX
+    value, flux = (_in_each_image(one, domain) for one in (given.value, given.flux))
+    return ScalarCondition(value, flux, None if given.capacity is None else given.capacity * volume)
+
+
+def _in_each_image(value: ScalarValue | None, domain: Domain) -> ScalarValue | None:
+    """The ``value`` in a domain, the same in its images between periodic surfaces, where a mesh may go on."""
+    if value is None or not domain.periodic:
+        return value
+    return lambda time, points: value(time, domain.wrapped(points))
+
+
+def check_scalar(model: Model, fluid: Fluid) -> None:
+    """Refuse, with SceneError, a scalar that the model's backend, domain or bodies cannot have."""
+    scalar = fluid.scalar
+    if scalar is None:
+        return
+    with all_told() as ask:
+        ask(_check_backend, model, fluid)
+        ask(_check_buoyancy, model, fluid, scalar)
+        ask(_check_faces, model, scalar)
+        ask(_check_bodies, model, scalar)
+        for name in ("initial", "source"):
+            ask(_check_function, model, f"scalar.{name}", getattr(scalar, name))
+
+
+def _check_backend(model: Model, fluid: Fluid) -> None:
+    if not fluid.backend.part.scalars:
+        found = f"one with backend {fluid.backend.part.name!r}"
+        raise SceneError("scalar", found, "a backend that solves for it", "Choose backend = 'scikit-fem'.")
+    if model.window is not None:
+        raise SceneError("scalar", "one with a window in the domain", None, "Leave out [domain.window].")
+
+
+def _check_buoyancy(model: Model, fluid: Fluid, scalar: Scalar) -> None:
+    if scalar.expansion is None:
+        return
+    if model.gravity is None:
+        raise SceneError("scalar.expansion", scalar.expansion, "one with gravity", "Add fluid.gravity.")
+    if fluid.initial == "steady":
+        allowed = "'rest' or expressions with scalar.expansion"
+        raise SceneError("fluid.initial", "'steady'", allowed, "Start at rest, and run until it is steady.")
+
+
+def _check_faces(model: Model, scalar: Scalar) -> None:
+    """Refuse conditions on no surface of the domain, and velocities that bring fluid in with nobody knows what."""
+    _check_surfaces(scalar.on_faces, [piece.name for piece in model.domain.pieces])
+    for condition in model.conditions:
+        given = scalar.on_faces.get(condition.name)
+        if given is not None and given.capacity is not None:
+            raise SceneError(f"{given.field}.capacity", given.capacity, "one of bodies alone", "Leave it out.")
+        if given is None and condition.passes and condition.prescribes_normal:
+            found = f"nothing on {condition.name!r}, which the fluid passes"
+            allowed = "a value of what comes in, or flux = 0 of what goes out"
+            raise SceneError("scalar.boundary", found, allowed, "Add a table [[scalar.boundary]].")
+
+
+def _check_bodies(model: Model, scalar: Scalar) -> None:
+    _check_surfaces(scalar.on_bodies, [body.name for body in model.all_bodies])
+
+
+def _check_surfaces(given: Mapping[str, ScalarOnSurface], known: list[str]) -> None:
+    """Refuse names that are not known, and conditions that contradict themselves."""
+    for name, condition in given.items():
+        at, others = condition.field, (condition.value, condition.capacity)
+        if name not in known:
+            raise SceneError(f"{at}.on", repr(name), ", ".join(known), suggestion(name, known) or "Correct the name.")
+        if condition.flux is not None and any(other is not None for other in others):
+            key = "value" if condition.value is not None else "capacity"
+            raise SceneError(f"{at}.flux", f"a flux and a {key}", "one of them", "Keep one.")
+        if condition.flux is None and all(other is None for other in others):
+            raise SceneError(f"{at}.value", "nothing", "a value or a flux", "Add one, or leave the table out.")
+
+
+def _check_function(model: Model, at: str, value: ScalarValue | None) -> None:
+    """Refuse a function that gives no numbers at two corners of the domain."""
+    if value is None:
+        return
+    corners = np.array(model.domain.extent)
+    found = np.asarray(value(0.0, corners))
+    if found.shape != (len(corners),) or not np.isfinite(found).all():
+        raise SceneError(at, f"values of shape {found.shape}", f"finite ones of shape ({len(corners)},)", "Correct it.")
