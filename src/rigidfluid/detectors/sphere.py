@@ -43,10 +43,10 @@ class SphereDetector(Detector):
         super().__init__(options, bodies, walls)
         self._radii = np.array([_radius(index, body) for index, body in enumerate(bodies)], dtype=float)
         self._all_radii = np.append(self._radii, np.inf)  # behind those of the bodies that of any flat wall
-        self._pairs = NearPairs(self._radii)
         flat = [(wall.surface, plane) for wall in walls if (plane := wall.shape.plane)]
         self._surfaces = np.array([surface for surface, _ in flat], dtype=np.int64)
         self._planes = np.array([[plane.point, plane.unit_normal] for _, plane in flat], dtype=float)
+        self._pairs = NearPairs(self._radii, self._planes)
         self._curved = [wall for wall in walls if not wall.shape.plane]
 
     @classmethod

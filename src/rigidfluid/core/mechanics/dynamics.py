@@ -56,6 +56,7 @@ class DryDynamics(OwnMotions):
         self._velocity = twist.velocity.copy()
         self._inverse: FloatArray = np.asarray(np.linalg.inv(inertia), dtype=np.float64)
         self._round = bool(np.all(inertia == inertia[:, :1, :1] * np.eye(inertia.shape[1])))
+        self._balls = self._inverse[:, 0, 0].copy() if self._round and inertia.shape[1] == 3 else None
         spin = lab_inertia(inertia, pose.orientation)
         self._momentum = np.einsum("nij,nj->ni", spin, twist.angular_velocity)
 
@@ -124,11 +125,15 @@ class DryDynamics(OwnMotions):
 
     def drift(self, time: float) -> None:
         """Move straight on and turn freely; move prescribed bodies with their twist in mid-time."""
-        from rigidfluid.core.mechanics.free_rotation import rotate_freely
+        from rigidfluid.core.mechanics.free_rotation import rotate_freely, turn_balls
 
         if self._any_prescribed:
             self._prescribe(self._time + 0.5 * time)
-        orientation = rotate_freely(self.pose.orientation, self._momentum, self._inertia, time)
+        orientation = self.pose.orientation
+        if self._balls is not None:
+            orientation = turn_balls(orientation, self._momentum, self._balls, time)
+        else:
+            orientation = rotate_freely(orientation, self._momentum, self._inertia, time)
         self.pose = Pose(self.pose.position + time * self._velocity, orientation)
         self._time += time
         if self._any_prescribed:
