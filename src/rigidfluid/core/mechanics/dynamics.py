@@ -26,6 +26,19 @@ class Turning(NamedTuple):
     arm: FloatArray
 
 
+class FreeBalls(NamedTuple):
+    """Arrays of balls that move freely: ``position`` (n, d), ``orientation`` (n, q), ``velocity`` (n, d), angular
+    ``momentum`` (n, k), ``mass`` and ``inverse_inertia`` (n,) of each, and ``weight`` (n, d)."""
+
+    position: FloatArray
+    orientation: FloatArray
+    velocity: FloatArray
+    momentum: FloatArray
+    mass: FloatArray
+    inverse_inertia: FloatArray
+    weight: FloatArray
+
+
 class DryDynamics(OwnMotions):
     """Newton–Euler without a fluid: m dU/dt = F + W, d(R I Rᵀ ω)/dt = T, between kicks exact.
 
@@ -138,6 +151,23 @@ class DryDynamics(OwnMotions):
         self._time += time
         if self._any_prescribed:
             self._prescribe(self._time)
+
+    @property
+    def is_of_free_balls(self) -> bool:
+        """Tell whether the inertia of each body is that of a ball, and none is prescribed or under a torque."""
+        return type(self) is DryDynamics and self._round and not self._any_prescribed and self._turning is None
+
+    def free_balls(self) -> FreeBalls:
+        """The present state as balls that move freely: velocities and momenta are those of the bodies themselves."""
+        pose, ordered = self.pose, np.ascontiguousarray
+        place = np.array(pose.position, order="C"), np.array(pose.orientation, order="C")
+        own = ordered(self._mass), ordered(self._inverse[:, 0, 0]), ordered(self._weight)
+        return FreeBalls(*place, self._velocity, self._momentum, *own)
+
+    def place(self, balls: FreeBalls, time: float) -> None:
+        """Take over the pose of ``balls`` that have moved for a ``time``."""
+        self.pose = Pose(balls.position, balls.orientation)
+        self._time += time
 
     def _prescribe(self, time: float) -> None:
         given, d = self._prescribed_twist(time), self._velocity.shape[1]

@@ -57,7 +57,7 @@ def _turn(orientation, angular_momentum, inertia, time):
     body, turned = 0, 0.0
     for body in range(len(orientation)):
         if _is_round(inertia, body):
-            _spin(orientation, angular_momentum, body, time / inertia[body, 0, 0])
+            turn_ball(orientation, angular_momentum, body, time / inertia[body, 0, 0])
             continue
         inverse = np.linalg.inv(inertia[body])
         turned = abs(time) * (np.sqrt((angular_momentum[body] ** 2).sum()) * np.sqrt((inverse**2).sum()))
@@ -73,7 +73,7 @@ def turn_balls(orientation, angular_momentum, inverse_inertia, time):
     one's moment of inertia (n,) [1/(mass·length²)]."""
     turned = orientation.copy()
     for body in range(len(orientation)):
-        _spin(turned, angular_momentum, body, time * inverse_inertia[body])
+        turn_ball(turned, angular_momentum, body, time * inverse_inertia[body])
     return turned
 
 
@@ -86,9 +86,12 @@ def _is_round(inertia, body):
     return True
 
 
-@njit(cache=True, error_model="numpy")
-def _spin(orientation, momentum, body, factor):
-    """Turn one quaternion in place by exp([factor · momentum]×)."""
+@njit(cache=True, nogil=True, error_model="numpy")
+def turn_ball(orientation, momentum, body, factor):
+    """Turn one angle or quaternion in place by exp([factor · momentum]×)."""
+    if orientation.shape[1] == 1:
+        orientation[body, 0] += factor * momentum[body, 0]
+        return
     half = 0.5 * factor
     x, y, z = half * momentum[body, 0], half * momentum[body, 1], half * momentum[body, 2]
     if x == y == z == 0.0:
@@ -103,7 +106,7 @@ def _spin(orientation, momentum, body, factor):
     orientation[body, 2], orientation[body, 3] = scale * g, scale * h
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy")
 def _cosine_and_ratio(square):
     """cos φ and sin φ/φ for a ``square`` φ² of an angle [1]: by their series where the fifth term is below rounding."""
     if square < SMALL:

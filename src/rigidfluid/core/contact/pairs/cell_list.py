@@ -19,7 +19,7 @@ _CELLS_PER_BALL = 8
 def near_each_ball(position, radii, planes, reach):
     """Surfaces within ``reach`` of each of n balls [length]: balls of higher numbers, and flat walls from n on, sorted.
 
-    Those of ball a are ``second[start[a]:start[a + 1]]`` of ``start`` (n + 1,) and ``second``. Gaps are |x_a - x_b| -
+    Ball a has ``second[start[a]:start[a + 1]]`` of ``start`` (n + 1,) and ``second``. Gaps are |x_a - x_b| -
     r_a - r_b and (x_a - p)·n - r_a for a point p and the normal n of each of ``planes`` (w, 2, d).
     """
     count, dimension = position.shape

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,8 @@ from numba import njit
 from rigidfluid.core.contact.pairs.broad_phase import SKIN
 from rigidfluid.core.contact.pairs.cell_list import near_each_ball
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.wall import Wall
+from rigidfluid.core.model.body import Body
 
 _LISTS = 2
 _ALL_PAIRS = 32
@@ -44,25 +47,36 @@ class NearPairs:
     """
 
     def __init__(self, radii: FloatArray, planes: FloatArray) -> None:
-        self._radii, self._planes = radii, planes
+        self.radii, self.planes = radii, planes
         self._skin = SKIN * float(radii.mean()) if len(radii) else 0.0
         self._lists: list[PairList] = []
 
     def within(self, position: FloatArray, reach: float) -> PairList:
         """Pairs with a gap ≤ ``reach`` for balls at ``position`` (n, d), and some more."""
-        wide = np.inf if len(self._radii) <= _ALL_PAIRS else reach + self._skin
+        wide = self.wider(reach)
         for found in self._lists:
             # a list that looks much too far would be right, but slow
             if found.reach <= wide + self._skin and found.holds(position, reach):
                 return found
-        made = self._made(position, wide)
-        self._lists = [made, *self._lists[: _LISTS - 1]]
+        start, second = near_each_ball(position, self.radii, self.planes, wide)
+        made = PairList(start, second, position.copy(), wide)
+        self.keep(made)
         return made
 
-    def _made(self, position: FloatArray, reach: float) -> PairList:
-        planes = self._planes.reshape(-1, 2, position.shape[1])
-        start, second = near_each_ball(position, self._radii, planes, reach)
-        return PairList(start, second, position.copy(), reach)
+    def wider(self, reach: float) -> float:
+        """Reach of a list that is made for this one [length]: infinite for few balls."""
+        return np.inf if len(self.radii) <= _ALL_PAIRS else reach + self._skin
+
+    def keep(self, made: PairList) -> None:
+        """Keep a list for the next question."""
+        self._lists = [made, *self._lists[: _LISTS - 1]]
+
+
+def flat_walls(bodies: Sequence[Body], walls: Sequence[Wall]) -> FloatArray:
+    """A point and the unit normal of each flat wall around ``bodies``, (w, 2, d)."""
+    planes = [plane for wall in walls if (plane := wall.shape.plane)]
+    rows = [[plane.point, plane.unit_normal] for plane in planes]
+    return np.array(rows, dtype=float).reshape(len(rows), 2, bodies[0].dimension if bodies else 0)
 
 
 @njit(cache=True, nogil=True)
