@@ -62,7 +62,9 @@ def _touching_distance(contacts: Contacts) -> FloatArray:
 
 
 def _formula(parameters, gap, radius_a, radius_b, mass, opening, sliding):  # type: ignore[no-untyped-def]
-    """Force of one contact: it is compiled."""
+    """Energy and force of one contact: it is compiled."""
     closeness, wall = max(parameters[0] - gap, 0.0), np.isinf(radius_b)
     epsilon = parameters[2] if wall else parameters[1]
-    return (radius_a + (radius_a if wall else radius_b) + gap) * closeness**2 / epsilon, 0.0, 0.0
+    touching = radius_a + (radius_a if wall else radius_b)
+    energy = (touching + parameters[0]) * closeness**3 / 3 - closeness**4 / 4
+    return energy / epsilon, (touching + gap) * closeness**2 / epsilon, 0.0, 0.0

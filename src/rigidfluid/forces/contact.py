@@ -58,7 +58,8 @@ class ContactPointLaw(Repulsion):
 
 
 def _formula(parameters, gap, radius_a, radius_b, mass, opening, sliding):  # type: ignore[no-untyped-def]
-    """Force of one contact: it is compiled."""
+    """Energy and force of one contact: it is compiled."""
     closeness, wall = max(parameters[0] - gap, 0.0), np.isinf(radius_b)
     epsilon = parameters[2] if wall else parameters[1]
-    return gap * closeness**2 / epsilon, 0.0, 0.0
+    energy = parameters[0] * closeness**3 / 3 - closeness**4 / 4
+    return energy / epsilon, gap * closeness**2 / epsilon, 0.0, 0.0

@@ -193,14 +193,15 @@ class SpringDashpotLaw(ForceLaw):
 
 
 def _formula(parameters, gap, radius_a, radius_b, mass, opening, sliding):  # type: ignore[no-untyped-def]
-    """Force of one contact: it is compiled."""
+    """Energy and force of one contact: it is compiled."""
     law_range, stiffness, damping, scale, friction, ratio = parameters
-    force = stiffness * max(law_range - gap, 0.0)
+    overlap = max(law_range - gap, 0.0)
+    force = stiffness * overlap
     if force == 0.0:
-        return 0.0, 0.0, 0.0
+        return 0.0, 0.0, 0.0, 0.0
     if not np.isnan(scale):
         damping = scale * np.sqrt(mass * stiffness)
     along, most = ratio * damping, friction * abs(force - damping * opening)
     if along * sliding > most:
         along = most / sliding
-    return force, -damping * opening, along
+    return 0.5 * force * overlap, force, -damping * opening, along

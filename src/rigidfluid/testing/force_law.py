@@ -217,7 +217,7 @@ class ForceLawContract:
             np.testing.assert_allclose(law.couple(some, moving), law.couple(contacts, motion)[chosen], rtol=1e-14)
 
     def test_a_formula_gives_the_same_force(self, law: ForceLaw, dimension: int) -> None:
-        """The formula of one contact, if the class has one, gives ``force`` and ``damping``, and can be compiled."""
+        """The formula of one contact, if the class has one, gives energy, force and damping, and can be compiled."""
         formula = own_formula(law)
         if formula is None:
             pytest.skip("the law has no formula")
@@ -236,7 +236,8 @@ class ForceLawContract:
             np.linalg.norm(along, axis=1),
         )
         parts = [formula.function(formula.parameters, *row) for row in zip(*numbers, strict=True)]
-        push, damping, drag = np.array(parts).T[:, :, None]
+        _assert_close(np.array(parts)[:, 0], law.energy(contacts))
+        push, damping, drag = np.array(parts).T[1:, :, None]
         _assert_close(push * contacts.normal, law.force(contacts))
         _assert_close(damping * contacts.normal - drag * along, law.damping(contacts, motion))
         assert np.all(drag >= 0.0)

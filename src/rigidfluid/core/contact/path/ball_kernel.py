@@ -175,7 +175,9 @@ def _push(formula, parameters, balls, radius, body, gap, normal, damped, force, 
             along[k] -= opening * normal[i, k]
             sliding += along[k] ** 2
         radius_b, inverse = (radius[b], 1.0 / mass[a] + 1.0 / mass[b]) if b < count else (np.inf, 1.0 / mass[a])
-        push, damping, drag = formula(parameters, gap[i], radius[a], radius_b, 1.0 / inverse, opening, np.sqrt(sliding))
+        _, push, damping, drag = formula(
+            parameters, gap[i], radius[a], radius_b, 1.0 / inverse, opening, np.sqrt(sliding)
+        )
         dampers += damping != 0.0 or drag != 0.0
         for k in range(dimension):
             damped[i, k] = damping * normal[i, k] - drag * along[k]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
-from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from rigidfluid.core.mechanics.dynamics import DryDynamics
 from rigidfluid.core.model.detection import Sight
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.force_law import ForceLaw
-from rigidfluid.core.model.pair_formula import PairFormula, compiled, own_formula
+from rigidfluid.core.model.pair_formula import PairFormula, compiled, formulas_compiled, own_formula
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Wrench
 
@@ -40,8 +39,7 @@ class BallSubsteps:
         around = listed.start, listed.second, listed.position.copy(), listed.reach, near.wider(law_range), near.planes
         wrench, pushed = Wrench(load.wrench.force.copy(), load.wrench.torque.copy()), (impulse.force, impulse.torque)
         now = wrench.force, wrench.torque, load.loss
-        with catch_warnings():
-            simplefilter("ignore")  # Numba calls functions as arguments experimental when it compiles for one
+        with formulas_compiled():
             count, left, planned, dissipated, loss, gap, nearest, anew, made = advance_balls(
                 self._formula, self._law, tuple(balls), near.radii, around, now, pushed, tuple(span)
             )
