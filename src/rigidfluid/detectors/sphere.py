@@ -36,17 +36,17 @@ class SphereDetector(Detector):
 
     name: ClassVar[str] = "sphere"
     cost: ClassVar[float] = 1.0
+    closed_form: ClassVar[bool] = True
 
     def __init__(self, options: PartOptions, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
-        from rigidfluid.core.contact.pairs.near_pairs import NearPairs
+        from rigidfluid.core.contact.pairs.near_pairs import NearPairs, flat_walls
 
         super().__init__(options, bodies, walls)
         self._radii = np.array([_radius(index, body) for index, body in enumerate(bodies)], dtype=float)
         self._all_radii = np.append(self._radii, np.inf)  # behind those of the bodies that of any flat wall
-        self._pairs = NearPairs(self._radii)
-        flat = [(wall.surface, plane) for wall in walls if (plane := wall.shape.plane)]
-        self._surfaces = np.array([surface for surface, _ in flat], dtype=np.int64)
-        self._planes = np.array([[plane.point, plane.unit_normal] for _, plane in flat], dtype=float)
+        flat = [wall for wall in walls if wall.shape.plane]
+        self._surfaces = np.array([wall.surface for wall in flat], dtype=np.int64)
+        self._pairs = NearPairs(self._radii, flat_walls(bodies, walls))
         self._curved = [wall for wall in walls if not wall.shape.plane]
 
     @classmethod
@@ -66,7 +66,7 @@ class SphereDetector(Detector):
         from rigidfluid.detectors.sphere_contacts import Balls, FlatWalls, near_surfaces, points_and_normals
 
         radii, pairs = self._radii, self._pairs.within(position, reach)
-        balls, walls = Balls(position, radii), FlatWalls(self._planes.reshape(-1, 2, position.shape[1]), self._surfaces)
+        balls, walls = Balls(position, radii), FlatWalls(self._pairs.planes, self._surfaces)
         a, b, gap = near_surfaces(balls, (pairs.start, pairs.second), walls, reach)
         point_a, point_b, normal = points_and_normals(balls, walls, a, b)
         return Contacts(

@@ -39,33 +39,38 @@ def _square(position, a, b):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _height(position, a, planes, wall):
+    """Distance of a centre from a plane."""
+    height = 0.0
+    for k in range(position.shape[1]):
+        height += (position[a, k] - planes[wall, 0, k]) * planes[wall, 1, k]
+    return height
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def near_surfaces(balls, pairs, walls, reach):
     """Balls a, surfaces b near them and gaps ≤ ``reach`` [length], (m,) each, sorted by (a, b).
 
-    The ``pairs``, a start and the second balls, are ball a with ``second[start[a]:start[a + 1]]``, of higher numbers.
+    The ``pairs``, a start and the partners, are ball a with ``second[start[a]:start[a + 1]]``: balls of higher numbers,
+    and walls numbered from n on.
     """
     (position, radii), (start, second), (planes, surfaces) = balls, pairs, walls
-    count, dimension = position.shape
-    most = len(second) + count * len(planes)
-    body, other, gap = np.empty(most, np.int64), np.empty(most, np.int64), np.empty(most)
+    count = len(position)
+    body, other, gap = np.empty(len(second), np.int64), np.empty(len(second), np.int64), np.empty(len(second))
     found = 0
     for a in range(count):
         for pair in range(start[a], start[a + 1]):
             b = second[pair]
-            square = _square(position, a, b)
-            # a root for those alone that may be near
-            if square > 1.001 * max(radii[a] + radii[b] + reach, 0.0) ** 2:
-                continue
-            free = np.sqrt(square) - radii[a] - radii[b]
+            if b < count:
+                square = _square(position, a, b)
+                # a root for those alone that may be near
+                if square > 1.001 * max(radii[a] + radii[b] + reach, 0.0) ** 2:
+                    continue
+                free = np.sqrt(square) - radii[a] - radii[b]
+            else:
+                free, b = _height(position, a, planes, b - count) - radii[a], surfaces[b - count]
             if free <= reach:
                 body[found], other[found], gap[found] = a, b, free
-                found += 1
-        for wall in range(len(planes)):
-            height = 0.0
-            for k in range(dimension):
-                height += (position[a, k] - planes[wall, 0, k]) * planes[wall, 1, k]
-            if height - radii[a] <= reach:
-                body[found], other[found], gap[found] = a, surfaces[wall], height - radii[a]
                 found += 1
     return body[:found].copy(), other[:found].copy(), gap[:found].copy()
 
@@ -92,9 +97,7 @@ def points_and_normals(balls, walls, body, other):
                 point_b[i, k] = position[b, k] + radii[b] * normal[i, k]
         else:
             wall = np.searchsorted(surfaces, b)
-            height = 0.0
-            for k in range(dimension):
-                height += (position[a, k] - planes[wall, 0, k]) * planes[wall, 1, k]
+            height = _height(position, a, planes, wall)
             for k in range(dimension):
                 normal[i, k] = planes[wall, 1, k]
                 point_b[i, k] = position[a, k] - height * normal[i, k]

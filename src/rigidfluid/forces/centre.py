@@ -9,6 +9,7 @@ import numpy as np
 from rigidfluid.core.contact.laws.balls import require_balls
 from rigidfluid.core.contact.laws.repulsion import Repulsion, RepulsionOptions
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.pair_formula import PairFormula
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts
 
@@ -49,8 +50,21 @@ class CentreLaw(Repulsion):
         closeness = self.closeness(contacts)
         return closeness * (2.0 * (_touching_distance(contacts) + contacts.gap) - closeness)
 
+    def pair_formula(self) -> PairFormula | None:
+        """R + gap) w²/ε, unless ε is `auto`."""
+        return self.formula(_formula)
+
 
 def _touching_distance(contacts: Contacts) -> FloatArray:
     """R = r_i + r_j, the distance of the centres where the surfaces touch, (m,) [length]."""
     require_balls(contacts, CentreLaw.name)
     return contacts.radius_a + np.where(contacts.at_wall, contacts.radius_a, contacts.radius_b)
+
+
+def _formula(parameters, gap, radius_a, radius_b, mass, opening, sliding):  # type: ignore[no-untyped-def]
+    """Energy and force of one contact: it is compiled."""
+    closeness, wall = max(parameters[0] - gap, 0.0), np.isinf(radius_b)
+    epsilon = parameters[2] if wall else parameters[1]
+    touching = radius_a + (radius_a if wall else radius_b)
+    energy = (touching + parameters[0]) * closeness**3 / 3 - closeness**4 / 4
+    return energy / epsilon, (touching + gap) * closeness**2 / epsilon, 0.0, 0.0

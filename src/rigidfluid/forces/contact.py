@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
+import numpy as np
+
 from rigidfluid.core.contact.laws.repulsion import Repulsion, RepulsionOptions
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.pair_formula import PairFormula
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts
 
@@ -48,3 +51,15 @@ class ContactPointLaw(Repulsion):
         """2 gap w - w², (m,) [length²]."""
         closeness = self.closeness(contacts)
         return closeness * (2.0 * contacts.gap - closeness)
+
+    def pair_formula(self) -> PairFormula | None:
+        """gap w²/ε, unless ε is `auto`."""
+        return self.formula(_formula)
+
+
+def _formula(parameters, gap, radius_a, radius_b, mass, opening, sliding):  # type: ignore[no-untyped-def]
+    """Energy and force of one contact: it is compiled."""
+    closeness, wall = max(parameters[0] - gap, 0.0), np.isinf(radius_b)
+    epsilon = parameters[2] if wall else parameters[1]
+    energy = parameters[0] * closeness**3 / 3 - closeness**4 / 4
+    return energy / epsilon, gap * closeness**2 / epsilon, 0.0, 0.0

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+import numpy as np
+
 from rigidfluid.core.contact.laws.repulsion import Repulsion, RepulsionOptions
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.pair_formula import PairFormula
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts
 
@@ -38,3 +41,14 @@ class NormalLaw(Repulsion):
     def unit_stiffness(self, contacts: Contacts) -> FloatArray:
         """2 w, (m,) [length]."""
         return 2.0 * self.closeness(contacts)
+
+    def pair_formula(self) -> PairFormula | None:
+        """w²/ε, unless ε is `auto`."""
+        return self.formula(_formula)
+
+
+def _formula(parameters, gap, radius_a, radius_b, mass, opening, sliding):  # type: ignore[no-untyped-def]
+    """Energy and force of one contact: it is compiled."""
+    closeness, wall = max(parameters[0] - gap, 0.0), np.isinf(radius_b)
+    epsilon = parameters[2] if wall else parameters[1]
+    return closeness**3 / 3 / epsilon, closeness**2 / epsilon, 0.0, 0.0

@@ -17,6 +17,7 @@ from rigidfluid.core.mechanics.coulomb import (
 )
 from rigidfluid.core.model.contacts import normal_part, tangential_part
 from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.pair_formula import PairFormula
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Loads, Motion
 
@@ -135,6 +136,15 @@ class SpringDashpotLaw(ForceLaw):
             rubbing = sliding_friction(along, self._greatest_friction(contacts, coefficient * speed), sliding)
         return np.asarray(-(coefficient * speed)[:, None] * contacts.normal - rubbing)
 
+    def pair_formula(self) -> PairFormula | None:
+        """k δ, the dashpot across the surfaces and the friction along them, unless springs are stretched there."""
+        if self.sticking:
+            return None
+        options = self.options
+        scale = np.nan if options.restitution is None else dashpot_coefficient(options.restitution, 1.0, np.ones(1))[0]
+        numbers = [self.range, options.stiffness, options.damping or 0.0, scale, options.friction]
+        return PairFormula(_formula, np.array([*numbers, options.tangential_damping]))
+
     def tangential_stiffness(self, contacts: Contacts) -> FloatArray:
         """k_t where the shells overlap, (m,) [force/length]."""
         return np.where(self._overlap(contacts) > 0.0, self.options.tangential_stiffness or 0.0, 0.0)
@@ -180,3 +190,18 @@ class SpringDashpotLaw(ForceLaw):
         if self.options.restitution is None:
             return np.full(len(mass), self.options.damping or 0.0)
         return dashpot_coefficient(self.options.restitution, self.options.stiffness, mass)
+
+
+def _formula(parameters, gap, radius_a, radius_b, mass, opening, sliding):  # type: ignore[no-untyped-def]
+    """Energy and force of one contact: it is compiled."""
+    law_range, stiffness, damping, scale, friction, ratio = parameters
+    overlap = max(law_range - gap, 0.0)
+    force = stiffness * overlap
+    if force == 0.0:
+        return 0.0, 0.0, 0.0, 0.0
+    if not np.isnan(scale):
+        damping = scale * np.sqrt(mass * stiffness)
+    along, most = ratio * damping, friction * abs(force - damping * opening)
+    if along * sliding > most:
+        along = most / sliding
+    return 0.5 * force * overlap, force, -damping * opening, along

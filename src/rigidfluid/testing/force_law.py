@@ -14,6 +14,7 @@ from rigidfluid.core.mechanics.rigid import moment
 from rigidfluid.core.mechanics.wrenches import contact_wrench
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.pair_formula import compiled, own_formula
 from rigidfluid.core.model.types import Contacts, Motion, Pose
 from rigidfluid.errors import StepRejected
 
@@ -214,6 +215,33 @@ class ForceLawContract:
                 np.testing.assert_allclose(column(some), column(contacts)[chosen], rtol=1e-14)
             np.testing.assert_allclose(law.damping(some, moving), law.damping(contacts, motion)[chosen], rtol=1e-14)
             np.testing.assert_allclose(law.couple(some, moving), law.couple(contacts, motion)[chosen], rtol=1e-14)
+
+    def test_a_formula_gives_the_same_force(self, law: ForceLaw, dimension: int) -> None:
+        """The formula of one contact, if the class has one, gives energy, force and damping, and can be compiled."""
+        formula = own_formula(law)
+        if formula is None:
+            pytest.skip("the law has no formula")
+        assert not law.sticking
+        assert not law.couples
+        contacts = self._contacts_of(law, (*self._finite_fractions(law), 1.0), dimension)
+        motion = _motion(contacts)
+        opening = np.sum(motion.velocity * contacts.normal, axis=1)
+        along = motion.velocity - opening[:, None] * contacts.normal
+        numbers = (
+            contacts.gap,
+            contacts.radius_a,
+            contacts.radius_b,
+            motion.mass,
+            opening,
+            np.linalg.norm(along, axis=1),
+        )
+        parts = [formula.function(formula.parameters, *row) for row in zip(*numbers, strict=True)]
+        _assert_close(np.array(parts)[:, 0], law.energy(contacts))
+        push, damping, drag = np.array(parts).T[1:, :, None]
+        _assert_close(push * contacts.normal, law.force(contacts))
+        _assert_close(damping * contacts.normal - drag * along, law.damping(contacts, motion))
+        assert np.all(drag >= 0.0)
+        assert compiled(formula.function)
 
     def _contacts_of(self, law: ForceLaw, fractions: tuple[float, ...], dimension: int) -> Contacts:
         contacts = self.make_contacts(law.range * np.array(fractions), dimension)

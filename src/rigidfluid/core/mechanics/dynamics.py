@@ -26,6 +26,19 @@ class Turning(NamedTuple):
     arm: FloatArray
 
 
+class FreeBalls(NamedTuple):
+    """Arrays of balls that move freely: ``position`` (n, d), ``orientation`` (n, q), ``velocity`` (n, d), angular
+    ``momentum`` (n, k), ``mass`` and ``inverse_inertia`` (n,) of each, and ``weight`` (n, d)."""
+
+    position: FloatArray
+    orientation: FloatArray
+    velocity: FloatArray
+    momentum: FloatArray
+    mass: FloatArray
+    inverse_inertia: FloatArray
+    weight: FloatArray
+
+
 class DryDynamics(OwnMotions):
     """Newton–Euler without a fluid: m dU/dt = F + W, d(R I Rᵀ ω)/dt = T, between kicks exact.
 
@@ -56,6 +69,7 @@ class DryDynamics(OwnMotions):
         self._velocity = twist.velocity.copy()
         self._inverse: FloatArray = np.asarray(np.linalg.inv(inertia), dtype=np.float64)
         self._round = bool(np.all(inertia == inertia[:, :1, :1] * np.eye(inertia.shape[1])))
+        self._balls = self._inverse[:, 0, 0].copy() if self._round and inertia.shape[1] == 3 else None
         spin = lab_inertia(inertia, pose.orientation)
         self._momentum = np.einsum("nij,nj->ni", spin, twist.angular_velocity)
 
@@ -124,15 +138,36 @@ class DryDynamics(OwnMotions):
 
     def drift(self, time: float) -> None:
         """Move straight on and turn freely; move prescribed bodies with their twist in mid-time."""
-        from rigidfluid.core.mechanics.free_rotation import rotate_freely
+        from rigidfluid.core.mechanics.free_rotation import rotate_freely, turn_balls
 
         if self._any_prescribed:
             self._prescribe(self._time + 0.5 * time)
-        orientation = rotate_freely(self.pose.orientation, self._momentum, self._inertia, time)
+        orientation = self.pose.orientation
+        if self._balls is not None:
+            orientation = turn_balls(orientation, self._momentum, self._balls, time)
+        else:
+            orientation = rotate_freely(orientation, self._momentum, self._inertia, time)
         self.pose = Pose(self.pose.position + time * self._velocity, orientation)
         self._time += time
         if self._any_prescribed:
             self._prescribe(self._time)
+
+    @property
+    def is_of_free_balls(self) -> bool:
+        """Tell whether the inertia of each body is that of a ball, and none is prescribed or under a torque."""
+        return type(self) is DryDynamics and self._round and not self._any_prescribed and self._turning is None
+
+    def free_balls(self) -> FreeBalls:
+        """The present state as balls that move freely: velocities and momenta are those of the bodies themselves."""
+        pose, ordered = self.pose, np.ascontiguousarray
+        place = np.array(pose.position, order="C"), np.array(pose.orientation, order="C")
+        own = ordered(self._mass), ordered(self._inverse[:, 0, 0]), ordered(self._weight)
+        return FreeBalls(*place, self._velocity, self._momentum, *own)
+
+    def place(self, balls: FreeBalls, time: float) -> None:
+        """Take over the pose of ``balls`` that have moved for a ``time``."""
+        self.pose = Pose(balls.position, balls.orientation)
+        self._time += time
 
     def _prescribe(self, time: float) -> None:
         given, d = self._prescribed_twist(time), self._velocity.shape[1]

@@ -17,6 +17,9 @@ LARGEST_TURN = 0.1
 MOST_TURNED = 1000.0
 """Largest rotation allowed in one call [rad]: the computing time grows with the turns."""
 
+SMALL = 1e-3
+"""Square of the angle up to which cosine and sine are computed by their series [rad²]."""
+
 _SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
 _STAGES = np.array([_SUZUKI, _SUZUKI, 1.0 - 4.0 * _SUZUKI, _SUZUKI, _SUZUKI])
 
@@ -54,7 +57,7 @@ def _turn(orientation, angular_momentum, inertia, time):
     body, turned = 0, 0.0
     for body in range(len(orientation)):
         if _is_round(inertia, body):
-            _spin(orientation, angular_momentum, body, time / inertia[body, 0, 0])
+            turn_ball(orientation, angular_momentum, body, time / inertia[body, 0, 0])
             continue
         inverse = np.linalg.inv(inertia[body])
         turned = abs(time) * (np.sqrt((angular_momentum[body] ** 2).sum()) * np.sqrt((inverse**2).sum()))
@@ -62,6 +65,16 @@ def _turn(orientation, angular_momentum, inertia, time):
             break
         _tumble(orientation[body], angular_momentum[body], inverse, time, int(np.ceil(turned / LARGEST_TURN)))
     return body, turned
+
+
+@njit(cache=True, error_model="numpy")
+def turn_balls(orientation, angular_momentum, inverse_inertia, time):
+    """Orientation (n, 4) after ``time`` of bodies that are all round: as by `rotate_freely`, with the inverse of each
+    one's moment of inertia (n,) [1/(mass·length²)]."""
+    turned = orientation.copy()
+    for body in range(len(orientation)):
+        turn_ball(turned, angular_momentum, body, time * inverse_inertia[body])
+    return turned
 
 
 @njit(cache=True)
@@ -73,15 +86,17 @@ def _is_round(inertia, body):
     return True
 
 
-@njit(cache=True, error_model="numpy")
-def _spin(orientation, momentum, body, factor):
-    """Turn one quaternion in place by exp([factor · momentum]×)."""
+@njit(cache=True, nogil=True, error_model="numpy")
+def turn_ball(orientation, momentum, body, factor):
+    """Turn one angle or quaternion in place by exp([factor · momentum]×)."""
+    if orientation.shape[1] == 1:
+        orientation[body, 0] += factor * momentum[body, 0]
+        return
     half = 0.5 * factor
     x, y, z = half * momentum[body, 0], half * momentum[body, 1], half * momentum[body, 2]
-    angle = np.sqrt(x * x + y * y + z * z)
-    if angle == 0.0:
+    if x == y == z == 0.0:
         return
-    w, ratio = np.cos(angle), np.sin(angle) / angle
+    w, ratio = _cosine_and_ratio(x * x + y * y + z * z)
     x, y, z = ratio * x, ratio * y, ratio * z
     a, b, c, d = orientation[body, 0], orientation[body, 1], orientation[body, 2], orientation[body, 3]
     e, f = w * a - x * b - y * c - z * d, w * b + x * a + y * d - z * c
@@ -89,6 +104,16 @@ def _spin(orientation, momentum, body, factor):
     scale = 1.0 / np.sqrt(e * e + f * f + g * g + h * h)
     orientation[body, 0], orientation[body, 1] = scale * e, scale * f
     orientation[body, 2], orientation[body, 3] = scale * g, scale * h
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _cosine_and_ratio(square):
+    """cos φ and sin φ/φ for a ``square`` φ² of an angle [1]: by their series where the fifth term is below rounding."""
+    if square < SMALL:
+        cosine = 1.0 + square * (-1 / 2 + square * (1 / 24 + square * (-1 / 720 + square * (1 / 40320))))
+        return cosine, 1.0 + square * (-1 / 6 + square * (1 / 120 + square * (-1 / 5040 + square * (1 / 362880))))
+    angle = np.sqrt(square)
+    return np.cos(angle), np.sin(angle) / angle
 
 
 @njit(cache=True)

@@ -117,12 +117,12 @@ def _planar_matrices(angle: FloatArray) -> FloatArray:
 
 def _quaternion_matrices(quaternion: FloatArray) -> FloatArray:
     w, x, y, z = quaternion.T
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    xx, yy, zz, xy, xz, yz, wx, wy, wz = x * x, y * y, z * z, x * y, x * z, y * z, w * x, w * y, w * z
+    matrices = np.empty((len(quaternion), 3, 3))
+    matrices[:, 0, 0], matrices[:, 0, 1], matrices[:, 0, 2] = 1 - 2 * (yy + zz), 2 * (xy - wz), 2 * (xz + wy)
+    matrices[:, 1, 0], matrices[:, 1, 1], matrices[:, 1, 2] = 2 * (xy + wz), 1 - 2 * (xx + zz), 2 * (yz - wx)
+    matrices[:, 2, 0], matrices[:, 2, 1], matrices[:, 2, 2] = 2 * (xz - wy), 2 * (yz + wx), 1 - 2 * (xx + yy)
+    return matrices
 
 
 def _quaternion_exponential(rotation_vector: FloatArray) -> FloatArray:
@@ -132,6 +132,9 @@ def _quaternion_exponential(rotation_vector: FloatArray) -> FloatArray:
 
 
 def _quaternion_product(left: FloatArray, right: FloatArray) -> FloatArray:
-    scalar = left[:, :1] * right[:, :1] - np.sum(left[:, 1:] * right[:, 1:], axis=-1, keepdims=True)
-    vector = left[:, :1] * right[:, 1:] + right[:, :1] * left[:, 1:] + np.cross(left[:, 1:], right[:, 1:])
-    return np.concatenate([scalar, vector], axis=-1)
+    product = np.empty(np.broadcast_shapes(left.shape, right.shape))
+    (w, *one), (v, *other) = left.T, right.T
+    product[:, 0] = w * v - (one[0] * other[0] + one[1] * other[1] + one[2] * other[2])
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        product[:, 1 + i] = w * other[i] + v * one[i] + (one[j] * other[k] - one[k] * other[j])
+    return product

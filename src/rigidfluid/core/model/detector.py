@@ -38,6 +38,10 @@ class Detector(Part):
     cost: ClassVar[float] = math.inf
     """Time for a near pair over that of `sphere` for two balls [1]; ``auto`` takes the cheapest that is exact."""
 
+    closed_form: ClassVar[bool] = False
+    """Tell whether it finds balls and flat walls by their closed forms, so that compiled substeps may find them without
+    asking; only the class that says so itself."""
+
     signed: bool = False
     """Tell whether contacts may have the sign -1."""
 

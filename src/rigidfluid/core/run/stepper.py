@@ -176,11 +176,12 @@ class Stepper:
     def _with_prescribed(self, path: BodyStep, state: State, level: int) -> BodyStep:
         """The path with poses at its end evaluated, not integrated: of prescribed motions, and of all bodies; and
         with joints that fit."""
-        end = self._end(state, level)
-        pose, prescribed = self.system.prescribed_pose(end), self.system.motions.prescribed[:, None]
-        position = np.where(prescribed, pose.position, path.motions.pose.position)
-        orientation = np.where(prescribed, pose.orientation, path.motions.pose.orientation)
-        motions = Pose(position, orientation)
+        end, motions = self._end(state, level), path.motions.pose
+        prescribed = self.system.motions.prescribed[:, None]
+        if prescribed.any():
+            pose = self.system.prescribed_pose(end)
+            position = np.where(prescribed, pose.position, motions.position)
+            motions = Pose(position, np.where(prescribed, pose.orientation, motions.orientation))
         motions = self.system.joints.closed(motions, end)
         bodies = self.system.motions.poses(motions, end)
         return replace(path, pose=bodies, motions=replace(path.motions, pose=motions))

@@ -8,7 +8,7 @@ from scenes import dry_tables
 from scipy.special import ellipj, ellipkinc
 
 from rigidfluid.core.case.load import scene_from_dict
-from rigidfluid.core.mechanics.free_rotation import _midpoint, rotate_freely
+from rigidfluid.core.mechanics.free_rotation import SMALL, _midpoint, rotate_freely, turn_balls
 from rigidfluid.core.mechanics.rigid import rotate, rotation_matrices
 from rigidfluid.core.mechanics.single_bodies import SingleBodies
 from rigidfluid.core.run.simulation import Simulation
@@ -37,6 +37,15 @@ def exact_spin(time):
     begin = ellipkinc(np.arcsin(START[1] / amplitude[1]), parameter)
     sn, cn, dn, _ = ellipj(begin + rate * time, parameter)
     return amplitude * [cn, sn, dn]
+
+
+@pytest.mark.parametrize("square", [0.0, 1e-12, 0.999 * SMALL, 1.001 * SMALL, 4.0])
+def test_balls_turn_by_their_rotation_vectors(square):
+    """By series and by sine and cosine alike, on either side of where one takes over."""
+    axis, moment = np.array([[0.48, 0.6, -0.64]]), 0.7
+    start = rotate(UPRIGHT, np.array([[0.3, -0.2, 0.9]]))
+    turned = turn_balls(start, 2.0 * np.sqrt(square) * moment * axis, np.array([1.0 / moment]), 1.0)
+    np.testing.assert_allclose(turned, rotate(start, 2.0 * np.sqrt(square) * axis), rtol=0, atol=4e-16)
 
 
 @pytest.mark.parametrize("time", [0.1, 1.0, 3.0, -2.0])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from rigidfluid.core.model.types import Contacts
@@ -11,8 +13,10 @@ from rigidfluid.errors import SceneError
 def require_balls(contacts: Contacts, law: str) -> None:
     """Raise SceneError at the first contact of a surface that is neither round nor flat; ``law`` is the name of the
     law."""
+    if not (math.isnan(contacts.radius_a.sum()) or math.isnan(contacts.radius_b.sum())):
+        return
     unknown = np.isnan(contacts.radius_a) | np.isnan(contacts.radius_b)
-    if not np.any(unknown):
+    if not unknown.any():
         return
     first = int(np.argmax(unknown))
     raise SceneError(

@@ -13,6 +13,7 @@ from rigidfluid.core.contact.laws.loads import require_loads
 from rigidfluid.core.contact.laws.work_to_stop import work_to_stop
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.pair_formula import Formula, PairFormula
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Loads
 
@@ -83,6 +84,13 @@ class Repulsion(ForceLaw):
     def stiffness(self, contacts: Contacts) -> FloatArray:
         """Stiffness k₁/ε, (m,) [force/length]."""
         return self.unit_stiffness(contacts) / self.epsilon(contacts)
+
+    def formula(self, function: Formula) -> PairFormula | None:
+        """Formula of one contact by a ``function`` of range, ε and ε at walls, None where ε is each contact's own."""
+        between, at_walls = self.options.epsilon, self.options.epsilon_wall
+        if AUTO in (between, at_walls):
+            return None
+        return PairFormula(function, np.array([self.range, between, between if at_walls is None else at_walls]))
 
     def epsilon(self, contacts: Contacts) -> FloatArray:
         """Stiffness parameter ε of each contact, (m,) [length^p/force]; infinite with ``auto`` between two bodies of

@@ -1,14 +1,18 @@
-"""Verlet's neighbour list: pairs of near balls, searched for only now and then."""
+"""Verlet's neighbour list: balls that are near each other and flat walls, searched for only now and then."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
 
-from rigidfluid.core.contact.pairs.broad_phase import SKIN, near_pairs
+from rigidfluid.core.contact.pairs.broad_phase import SKIN
+from rigidfluid.core.contact.pairs.cell_list import near_each_ball
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.wall import Wall
+from rigidfluid.core.model.body import Body
 
 _LISTS = 2
 _ALL_PAIRS = 32
@@ -16,9 +20,9 @@ _ALL_PAIRS = 32
 
 @dataclass(frozen=True, slots=True)
 class PairList:
-    """Pairs a < b within ``reach`` [length] when the balls were at ``position`` (n, d), sorted by (a, b).
+    """Pairs a < b within ``reach`` [length] when the n balls were at ``position`` (n, d), sorted by (a, b).
 
-    Slice ``second[start[a]:start[a + 1]]`` has the partners of ball a.
+    Slice ``second[start[a]:start[a + 1]]`` has the partners of ball a: other balls, then flat walls, numbered from n.
     """
 
     start: IntArray
@@ -36,32 +40,43 @@ class PairList:
 
 class NearPairs:
     """Verlet's neighbour list: pairs a little further apart than asked for, kept as long as no other can come near
-    (Verlet 1967, DOI 10.1103/PhysRev.159.98); ``radii`` (n,) [length].
+    (Verlet 1967, DOI 10.1103/PhysRev.159.98); ``radii`` (n,) [length], and a point and the unit normal of each of the
+    flat walls, ``planes`` (w, 2, d).
 
     The list decides how often pairs are searched for, and never which contacts are found.
     """
 
-    def __init__(self, radii: FloatArray) -> None:
-        self._radii = radii
+    def __init__(self, radii: FloatArray, planes: FloatArray) -> None:
+        self.radii, self.planes = radii, planes
         self._skin = SKIN * float(radii.mean()) if len(radii) else 0.0
         self._lists: list[PairList] = []
 
     def within(self, position: FloatArray, reach: float) -> PairList:
-        """Pairs with |x_a - x_b| - r_a - r_b ≤ ``reach`` for balls at ``position`` (n, d), and some more."""
-        wide = np.inf if len(self._radii) <= _ALL_PAIRS else reach + self._skin
+        """Pairs with a gap ≤ ``reach`` for balls at ``position`` (n, d), and some more."""
+        wide = self.wider(reach)
         for found in self._lists:
             # a list that looks much too far would be right, but slow
             if found.reach <= wide + self._skin and found.holds(position, reach):
                 return found
-        made = self._made(position, wide)
-        self._lists = [made, *self._lists[: _LISTS - 1]]
+        start, second = near_each_ball(position, self.radii, self.planes, wide)
+        made = PairList(start, second, position.copy(), wide)
+        self.keep(made)
         return made
 
-    def _made(self, position: FloatArray, reach: float) -> PairList:
-        first, second = near_pairs(position, self._radii, reach)
-        order = np.argsort(first * len(self._radii) + second)
-        start = np.searchsorted(first[order], np.arange(len(self._radii) + 1))
-        return PairList(start, second[order], position.copy(), reach)
+    def wider(self, reach: float) -> float:
+        """Reach of a list that is made for this one [length]: infinite for few balls."""
+        return np.inf if len(self.radii) <= _ALL_PAIRS else reach + self._skin
+
+    def keep(self, made: PairList) -> None:
+        """Keep a list for the next question."""
+        self._lists = [made, *self._lists[: _LISTS - 1]]
+
+
+def flat_walls(bodies: Sequence[Body], walls: Sequence[Wall]) -> FloatArray:
+    """A point and the unit normal of each flat wall around ``bodies``, (w, 2, d)."""
+    planes = [plane for wall in walls if (plane := wall.shape.plane)]
+    rows = [[plane.point, plane.unit_normal] for plane in planes]
+    return np.array(rows, dtype=float).reshape(len(rows), 2, bodies[0].dimension if bodies else 0)
 
 
 @njit(cache=True, nogil=True)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
-from typing import ClassVar
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
+
+if TYPE_CHECKING:
+    from rigidfluid.core.contact.pairs.near_pairs import NearPairs
 
 
 class PoseDetection(Detection):
@@ -28,6 +31,18 @@ class PoseDetection(Detection):
 
         self._system = system
         self._foreseen, self._look_ahead = partial(foreseen, system), partial(look_ahead, system)
+
+    @cached_property
+    def near_balls(self) -> NearPairs | None:
+        """Neighbour list of the bodies, if all are balls between flat walls, in closed form; else None."""
+        bodies, walls = self._system.bodies, self._system.walls
+        balls = [body.radius for body in bodies if body.radius is not None]
+        closed_form = vars(type(self._system.detector)).get("closed_form", False)
+        if not closed_form or len(balls) < len(bodies) or not all(wall.shape.plane for wall in walls):
+            return None
+        from rigidfluid.core.contact.pairs.near_pairs import NearPairs, flat_walls
+
+        return NearPairs(np.array(balls), flat_walls(bodies, walls))
 
     @staticmethod
     def mesh_at(pose: Pose, make: Callable[[Pose], Mesh]) -> Mesh:
@@ -62,6 +77,11 @@ class DetectionOfImages(PoseDetection):
         super().__init__(system)
         make = partial(type(system.detector), system.detector.options)
         self._images = ImageDetection(make, system.bodies, system.walls, system.lattice)
+
+    @property
+    def near_balls(self) -> None:
+        """None: the list knows no images."""
+        return None
 
     def detect(self, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
         return self._images.detect(pose, reach)

@@ -15,6 +15,7 @@ from rigidfluid.core.geometry.wall import WallVelocities
 from rigidfluid.core.model.contacts import middle, normal_part, select, sides, turning_radius
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.pair_formula import PairFormula, compiled, formulas_compiled, own_formula
 from rigidfluid.core.model.part_results import refuse_no_number
 from rigidfluid.core.model.types import Contacts, Motion, Pose, Twist
 
@@ -272,13 +273,27 @@ def _deepest(law: ForceLaw, contacts: Contacts, energy: FloatArray, force: Float
 
     The gap is zero where the law never can.
     """
-    start = np.minimum(contacts.gap, law.range)
+    start, formula = np.minimum(contacts.gap, law.range), own_formula(law)
+    if formula is not None and np.array_equal(contacts.at_wall, np.isinf(contacts.radius_b)):
+        return _deepest_by_formula(formula, contacts, start, energy, force)
     low, high = np.zeros(len(contacts)), start
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
         enough = law.energy(replace(contacts, gap=middle)) >= energy + force * (start - middle)
         low, high = np.where(enough, middle, low), np.where(enough, high, middle)
     return high
+
+
+def _deepest_by_formula(
+    formula: PairFormula, contacts: Contacts, start: FloatArray, energy: FloatArray, force: FloatArray
+) -> FloatArray:
+    """The same gap (m,), of balls and flat walls, searched from ``start`` (m,) on."""
+    from rigidfluid.core.contact.path.deepest_gaps import deepest_gaps
+
+    radii = contacts.radius_a, contacts.radius_b
+    with formulas_compiled():
+        found = deepest_gaps(compiled(formula.function), formula.parameters, start, *radii, energy, force, _HALVINGS)
+    return np.asarray(found)
 
 
 def _greatest(law: ForceLaw, contacts: Contacts, motion: Motion, deepest: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -7,11 +7,12 @@ from math import ceil
 
 import numpy as np
 
-from rigidfluid.core.contact.pairs.proximity import refuse_overlap
-from rigidfluid.core.contact.path.body_step import BodyStep, add_wrench, arrived
-from rigidfluid.core.contact.path.contact_load import contact_load, damping_loss
+from rigidfluid.core.contact.path.ball_substeps import ball_substeps
+from rigidfluid.core.contact.path.body_step import BodyStep, arrived
+from rigidfluid.core.contact.path.contact_load import contact_load
 from rigidfluid.core.contact.path.look_ahead import fastest_speeds
 from rigidfluid.core.contact.path.substep import Plan, Reach, plan
+from rigidfluid.core.contact.path.substeps import SingleSubsteps, Span, Substeps
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.model.detection import Sight
 from rigidfluid.core.model.dynamics import BodyDynamics
@@ -75,6 +76,7 @@ class SubstepPath:
         impulse, dissipated, actuator_work, count, left = nothing(dynamics.pose), 0.0, 0.0, 0, size
         load = contact_load(system, self.law, contacts, dynamics, self.springs)
         dissipated += load.slipped
+        substeps: Substeps = ball_substeps(system, self.law, dynamics) or SingleSubsteps(system, self.law, dynamics)
         planned, free_flight, substep, longest = 0.0, 0.0, 0.0, size / spring_parts(system, size)
         while left > 0.0:
             if planned <= 0.0 or contacts.gap.min(initial=np.inf) > self.law.range:
@@ -87,19 +89,14 @@ class SubstepPath:
                 free_flight, substep = self._next_plan(contacts, planned)
                 planned = min(planned, free_flight + MOST_ALIKE * substep)
             part = min(free_flight or substep, left, longest)
-            dynamics.kick(load.wrench, 0.5 * part)
-            dynamics.drift(part)
-            contacts = sight.contacts_at(dynamics.pose)
-            _refuse_overlaps(system, contacts)
-            before, load = load, contact_load(system, self.law, contacts, dynamics, load.springs, part)
-            dynamics.kick(load.wrench, 0.5 * part)
-            load = load._replace(loss=damping_loss(system, contacts, dynamics, load.damping))
-            impulse = add_wrench(add_wrench(impulse, before.wrench, 0.5 * part), load.wrench, 0.5 * part)
-            dissipated += 0.5 * part * (before.loss + load.loss) + load.slipped
-            actuator_work += 0.5 * part * (before.actuator_work + load.actuator_work)
-            count, planned = count + 1, planned - part
+            most = 1 if free_flight else MOST_SUBSTEPS - count
+            span = Span(left, planned, part, most, ROUNDING * size, not system.substeps)
+            done = substeps.advance(span, sight, load, impulse)
+            left, planned, contacts, load = done.left, done.planned, done.contacts, done.load
+            dissipated += done.dissipated
+            actuator_work += done.actuator_work
+            count += done.substeps
             free_flight = free_flight - part if free_flight - part > ROUNDING * size else 0.0
-            left = left - part if left - part > ROUNDING * size else 0.0
             if count == MOST_SUBSTEPS and left > 0.0:
                 raise _too_stiff(system, contacts, part)
         path = arrived(dynamics, impulse, dissipated, actuator_work, count)
@@ -135,14 +132,6 @@ def _surface_reach(system: System) -> Reach:
     radii = system.bounding_radii
     alone = np.bincount(system.motions.carrier)[system.motions.carrier] == 1
     return Reach(np.where(alone, system.arms, radii), system.rotational_factor)
-
-
-def _refuse_overlaps(system: System, contacts: Contacts) -> None:
-    """Raise StepRejected if the surfaces of a contact touch or overlap."""
-    if len(contacts) == 0 or contacts.gap.min() > 0.0:
-        return
-    worst = int(np.argmin(contacts.gap))
-    refuse_overlap(system, int(contacts.body_a[worst]), float(contacts.gap[worst]))
 
 
 def _too_stiff(system: System, contacts: Contacts, part: float) -> StepRejected:
