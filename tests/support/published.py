@@ -122,3 +122,17 @@ CYLINDER_ARRAY = {0.05: 15.56, 0.1: 24.83, 0.2: 51.53, 0.3: 102.90, 0.4: 217.89,
 # A simple cubic array of spheres: force over 6πμ, radius and mean velocity, by the share φ of the volume. Zick and
 # Homsy, J. Fluid Mech. 115 (1982) 13, table 2, as quoted by Basilisk's test `spheres`.
 SPHERE_ARRAY = {0.027: 2.008, 0.064: 2.810, 0.125: 4.292, 0.216: 7.442, 0.343: 15.4}
+
+# A cylinder of the fluid's density and of diameter .25 in a square channel of side 1, which is periodic, ρ = 1: Pan and
+# Glowinski, J. Comput. Phys. 181 (2002) 260, figure as digitised for `docs/source/examples/case2` of the repository
+# EllipsesInFlows (N. Hori), with its viscosity and pressure gradient; (way along the channel, height).
+MIGRATION_VISCOSITY, MIGRATION_GRADIENT = 1.0 / 2334.0, 2.337e-4
+MIGRATION_PATH = np.array(
+    [(0.03, 0.4000), (2.51, 0.3890), (5.00, 0.3628), (7.49, 0.3286), (10.01, 0.2948), (12.49, 0.2740)]
+    + [(15.02, 0.2695), (17.50, 0.2702), (20.02, 0.2712), (22.51, 0.2714), (25.00, 0.2717), (27.52, 0.2719)]
+    + [(30.00, 0.2721), (32.49, 0.2722), (35.01, 0.2722), (37.50, 0.2723), (40.02, 0.2723), (50.00, 0.2723)]
+)
+
+# The same array, settling without a mean flow: speed over that of a sphere alone, by the share φ. Sierou and Brady, J.
+# Fluid Mech. 448 (2001) 115, figure 9, digitised; reading error .01.
+SETTLING_ARRAY = {0.0267: 0.496, 0.0626: 0.358, 0.1244: 0.243, 0.2145: 0.160, 0.3420: 0.111}
