@@ -49,6 +49,7 @@ SUBJECTS = {
     },
     "Stokes flow and swimmers": {
         "periodic_arrays": "Drag in arrays of cylinders and spheres: compared with published tables",
+        "settling_arrays": "Spheres that settle as a cubic array: speeds compared with published drags and speeds",
         "effective_viscosity": "Sheared suspensions: viscosity by walls and by stresslets, compared with Einstein's",
         "swimmer": "A three-sphere swimmer in 2D: distance per cycle compared with two other computations",
         "swimmer_3d": "The same swimmer in 3D: compared with the exact series",
