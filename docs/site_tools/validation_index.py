@@ -29,6 +29,7 @@ SUBJECTS = {
         "wakes": "A fast disk and its wake: the effect of finer cells behind it",
         "window": "A short mesh moves with a disk in a long channel: compared with a mesh of the whole channel",
         "walls": "Curved and oblique walls: errors against exact flows, and their order",
+        "migration_in_channel": "A disk migrates to its height in a channel: path compared with Pan and Glowinski (2002)",
         "stenosis": "Two disks pass a throat: case 7 of the paper",
     },
     "Contacts": {
@@ -49,6 +50,7 @@ SUBJECTS = {
     "Stokes flow and swimmers": {
         "periodic_arrays": "Drag in arrays of cylinders and spheres: compared with published tables",
         "materials": "Fluids whose viscosity varies: orders of convergence, and the plastic limit of a cylinder's drag",
+        "settling_arrays": "Spheres that settle as a cubic array: speeds compared with published drags and speeds",
         "effective_viscosity": "Sheared suspensions: viscosity by walls and by stresslets, compared with Einstein's",
         "swimmer": "A three-sphere swimmer in 2D: distance per cycle compared with two other computations",
         "swimmer_3d": "The same swimmer in 3D: compared with the exact series",

@@ -122,3 +122,29 @@ CYLINDER_ARRAY = {0.05: 15.56, 0.1: 24.83, 0.2: 51.53, 0.3: 102.90, 0.4: 217.89,
 # A simple cubic array of spheres: force over 6πμ, radius and mean velocity, by the share φ of the volume. Zick and
 # Homsy, J. Fluid Mech. 115 (1982) 13, table 2, as quoted by Basilisk's test `spheres`.
 SPHERE_ARRAY = {0.027: 2.008, 0.064: 2.810, 0.125: 4.292, 0.216: 7.442, 0.343: 15.4}
+
+# A cylinder of the fluid's density and of diameter .25 in a square channel of side 1, which is periodic, ρ = 1: Pan and
+# Glowinski, J. Comput. Phys. 181 (2002) 260, figure as digitised for `docs/source/examples/case2` of the repository
+# EllipsesInFlows (N. Hori), with its viscosity and pressure gradient; (way along the channel, height).
+MIGRATION_VISCOSITY, MIGRATION_GRADIENT = 1.0 / 2334.0, 2.337e-4
+MIGRATION_PATH = np.array(
+    [(0.03, 0.4000), (2.51, 0.3890), (5.00, 0.3628), (7.49, 0.3286), (10.01, 0.2948), (12.49, 0.2740)]
+    + [(15.02, 0.2695), (17.50, 0.2702), (20.02, 0.2712), (22.51, 0.2714), (25.00, 0.2717), (27.52, 0.2719)]
+    + [(30.00, 0.2721), (32.49, 0.2722), (35.01, 0.2722), (37.50, 0.2723), (40.02, 0.2723), (50.00, 0.2723)]
+)
+
+# The same array, settling without a mean flow: speed over that of a sphere alone, by the share φ. Sierou and Brady, J.
+# Fluid Mech. 448 (2001) 115, figure 9, digitised; reading error .01.
+SETTLING_ARRAY = {0.0267: 0.496, 0.0626: 0.358, 0.1244: 0.243, 0.2145: 0.160, 0.3420: 0.111}
+
+# 72 disks of the fluid's density in a periodic channel, 16.9 % of its area, Re 1000: share of disks over the height.
+# Chen, Pan and Chang, Phys. Fluids 24 (2012), as digitised for `docs/source/examples/case4` of EllipsesInFlows
+# (N. Hori), thinned out.
+DISK_SHARE = np.array(
+    [(0.0002, 0.0007), (0.0437, 0.0032), (0.0734, 0.0187), (0.1015, 0.0633), (0.1175, 0.1069), (0.1289, 0.1524)]
+    + [(0.1441, 0.1975), (0.1564, 0.2388), (0.1778, 0.2834), (0.2074, 0.2905), (0.2361, 0.2679), (0.2748, 0.2800)]
+    + [(0.3104, 0.3217), (0.3619, 0.3583), (0.3958, 0.3590), (0.4249, 0.3198), (0.4463, 0.2739), (0.4748, 0.2292)]
+    + [(0.5097, 0.2375), (0.5411, 0.2820), (0.5846, 0.3265), (0.6237, 0.3344), (0.6693, 0.3522), (0.7048, 0.3306)]
+    + [(0.7413, 0.2989), (0.7697, 0.2782), (0.7996, 0.2862), (0.8277, 0.2712), (0.8481, 0.2267), (0.8642, 0.1821)]
+    + [(0.8793, 0.1375), (0.8909, 0.0939), (0.9061, 0.0490), (0.9317, 0.0089), (0.9732, 0.0006), (0.9997, 0.0002)]
+)

@@ -3,7 +3,7 @@
 import numpy as np
 from falling import falling_disk
 
-from rigidfluid.core.mesh.location import locate
+from rigidfluid.core.mesh.location import CellFinder, locate
 from rigidfluid.core.run.simulation import Simulation
 
 
@@ -20,3 +20,14 @@ def test_a_point_outside_gets_values_of_the_nearest_cell():
     _, coordinates = locate(mesh.points, mesh.cells, np.array([[1.0, 4.0], [2.1, 3.0]]))
     assert np.all(coordinates >= 0.0)
     np.testing.assert_allclose(coordinates.sum(axis=1), 1.0)
+
+
+def test_images_of_points_are_found_any_period_away():
+    mesh = Simulation(falling_disk(mesh={"size": 0.4, "size_body": 0.02}), None, False).state.mesh
+    ways, random = np.array([[2.0, 0.0], [0.0, 6.0]]), np.random.default_rng(0)
+    held = random.dirichlet(np.ones(3), len(mesh.cells))
+    periods = random.integers(-2, 3, (len(held), 2))
+    targets = np.einsum("ni,nid->nd", held, mesh.points[mesh.cells]) - periods @ ways
+    beside = np.array([[1.0, 4.0], [3.0, 4.0]])  # in the disk, so that its image is nearest: many cells are tried
+    ahead = CellFinder(mesh.points, mesh.cells).periods_ahead(np.concatenate([targets, beside]), ways)
+    np.testing.assert_array_equal(ahead, [*periods, [0, 0], [-1, 0]])

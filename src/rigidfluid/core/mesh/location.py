@@ -11,7 +11,8 @@ from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 INSIDE = -1e-10
 """Least barycentric coordinate of a point that counts as inside a cell [1]."""
 
-_CANDIDATES = (3, 16, 64, 512)
+_FEW = (3, 16)
+_CANDIDATES = (*_FEW, 64, 512)
 
 _FARTHEST = 2
 """Largest number of periods along each way in which an image is looked for."""
@@ -36,17 +37,20 @@ class CellFinder:
         return cell, move_inside(coordinates)
 
     def periods_ahead(self, targets: FloatArray, ways: FloatArray) -> IntArray:
-        """Numbers of the ``ways`` (k, d) from each target to its image in the mesh, (N, k)."""
-        ahead = np.zeros((len(targets), len(ways)), dtype=np.int64)
-        depth = self._nearest(targets)[1].min(axis=1)
-        for step in sorted(product(range(-_FARTHEST, _FARTHEST + 1), repeat=len(ways)), key=_length):
+        """Numbers of the ``ways`` (k, d) from each target to its image in the mesh, (N, k).
+
+        Few cells are tried at all images, before many are at any: most targets are in a cell of one image.
+        """
+        ahead, depth = np.zeros((len(targets), len(ways)), dtype=np.int64), np.full(len(targets), -np.inf)
+        steps = sorted(product(range(-_FARTHEST, _FARTHEST + 1), repeat=len(ways)), key=_length)
+        for counts, step in product((_FEW, _CANDIDATES), steps):
             outside = np.flatnonzero(depth < INSIDE)
-            found = self._nearest(targets[outside] + np.array(step) @ ways)[1].min(axis=1)
+            found = self._nearest(targets[outside] + np.array(step) @ ways, counts)[1].min(axis=1)
             better = found > depth[outside]
             ahead[outside[better]], depth[outside[better]] = step, found[better]
         return ahead
 
-    def _nearest(self, targets: FloatArray) -> tuple[IntArray, FloatArray]:
+    def _nearest(self, targets: FloatArray, counts: tuple[int, ...] = _CANDIDATES) -> tuple[IntArray, FloatArray]:
         """The same as `find` with coordinates as they are.
 
         The cells tried are those with the nearest centres, more of them for the targets that are not found yet.
@@ -55,7 +59,7 @@ class CellFinder:
         cell = np.zeros(len(targets), dtype=np.int64)
         coordinates = np.full((len(targets), corners.shape[1]), -np.inf)
         missing = np.arange(len(targets))
-        for count in _CANDIDATES:
+        for count in counts:
             _, near = self._centres.query(targets[missing], k=min(count, cells))
             near = near.reshape(len(missing), min(count, cells))
             rest = np.einsum("nkij,nkj->nki", self._inverse[near], targets[missing, None] - corners[near, 0])
