@@ -133,6 +133,8 @@ def test_each_rank_keeps_its_part_and_the_root_what_is_there_once(tmp_path):
             "probes.csv",
             "driving.csv",
             "stresslets.csv",
+            "scalar.csv",
+            "scalar_fluxes.csv",
         ),
         *("state.h5", "state.1.h5", "fields.pvd", "fields", "summary.json", "run.lock"),
     }
