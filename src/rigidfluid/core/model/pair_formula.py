@@ -52,8 +52,10 @@ def formulas_compiled() -> Iterator[None]:
 
 @cache
 def compiled(function: Formula) -> Any:
-    """The function, compiled for calls from compiled loops."""
-    from numba import cfunc
+    """The function, compiled for calls from compiled loops; as it is where Numba compiles nothing."""
+    from numba import cfunc, config
 
+    if getattr(config, "DISABLE_JIT", False):
+        return function
     numbers = ", ".join(["float64"] * 6)
     return cfunc(f"UniTuple(float64, 4)(float64[::1], {numbers})", cache=True)(function)

@@ -90,7 +90,7 @@ def _cells(position, width):
         shape[np.argmax(shape)] //= 2
     cell = np.zeros((count, 3), np.int64)
     for k in range(dimension):
-        scale = shape[k] / (high[k] - low[k])
+        scale = shape[k] / (high[k] - low[k]) if shape[k] > 1 else 0.0
         for a in range(count):
             place = (position[a, k] - low[k]) * scale
             if place > 0.0:
