@@ -158,6 +158,8 @@ def _told(model: type[BaseModel], complaint: ErrorDetails, complaints: Sequence[
         return _missing_key(place, complaint["input"], str(complaint["loc"][-1]))
     if complaint["type"] == "missing":
         return _short_list(_place(model, complaint["loc"][:-1], at), complaint, complaints)
+    if complaint["type"] in ("tuple_type", "list_type"):
+        return _single_value(place, complaint["input"])
     return SceneError(place.field or "scene", value_text(complaint["input"]), allowed_by(complaint), _remedy(place))
 
 
@@ -239,6 +241,15 @@ def _short_list(place: _Place, first: ErrorDetails, complaints: Sequence[ErrorDe
     empty = sum(each["type"] == "missing" and each["loc"][:-1] == first["loc"][:-1] for each in complaints)
     allowed = f"{len(first['input']) + empty} entries"
     return SceneError(place.field, value_text(first["input"]), allowed, _remedy(place))
+
+
+def _single_value(place: _Place, value: object) -> SceneError:
+    """Error for a single ``value`` in the place of a list."""
+    found = value_text(value)
+    if place.within is None and not place.types.tables:
+        return SceneError(place.field, found, "a list", f"Put it in brackets: [{found}].")
+    name = ".".join(part for part in place.field.split(".") if not part.isdecimal())
+    return SceneError(place.field, found, "a list of tables", f"Write [[{name}]] in front of each of its tables.")
 
 
 def _missing_key(place: _Place, table: Mapping[str, Any], key: str) -> SceneError:

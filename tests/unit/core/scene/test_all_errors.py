@@ -349,3 +349,22 @@ def test_misspelt_names_of_periodic_surfaces_are_told_before_pairs_are_missed() 
     with pytest.raises(SceneErrors) as errors:
         scene_from_dict(data)
     assert [error.subject for error in errors.value.errors] == ["boundary.0.on", "boundary.2.on"]
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "allowed", "remedy"),
+    [
+        ("boundary", {"on": "all"}, "a list of tables", "[[boundary]] in front"),
+        ("body", {"name": "disk"}, "a list of tables", "[[body]] in front"),
+        ("domain.lower", 0.0, "a list", "in brackets: [0.0]"),
+        ("swarm", "many", "a list of tables", "[[swarm]] in front"),
+    ],
+)
+def test_a_single_value_in_the_place_of_a_list(key: str, value: object, allowed: str, remedy: str) -> None:
+    scene = tomllib.loads((SCENES / "rebound.toml").read_text())
+    table, _, last = key.rpartition(".")
+    (scene[table] if table else scene)[last] = value
+    with pytest.raises(SceneError, match=re.escape(remedy)) as error:
+        scene_from_dict(scene)
+    assert str(error.value).startswith(f"{key}: found")
+    assert f"allowed is {allowed}. " in str(error.value)

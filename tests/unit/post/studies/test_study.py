@@ -323,7 +323,11 @@ def test_a_terminal_shows_a_bar(write: Write, tmp_path: Path) -> None:
     [
         ("[study]", "[stady]", ("stady", "a key that nothing reads", "Did you mean 'study'?")),
         ('label = "', 'lable = "', ("study.lable", "Did you mean 'label'?")),
-        ("time.step = [0.002, 0.001, 0.0005]", "time.step = 0.002", ("vary.time.step", "0.002", "a valid array")),
+        (
+            "time.step = [0.002, 0.001, 0.0005]",
+            "time.step = 0.002",
+            ("vary.time.step", "0.002", "a list", "in brackets: [0.002]"),
+        ),
         ("time.step = [0.002, 0.001, 0.0005]", "time.step = []", ("vary.time.step", "[]", "at least 1 item")),
         ("time.step =", "time.stop =", ("time.stop", "a key that nothing reads", "Did you mean 'step'?")),
         ("body.0.density", "body.7.density", ("body.7.density", "'7' in a list", "a number from 0 to 1")),
