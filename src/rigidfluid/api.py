@@ -145,6 +145,7 @@ from rigidfluid.marching.options import MarchingOptions
 from rigidfluid.materials.bingham import Bingham, BinghamOptions
 from rigidfluid.materials.carreau import Carreau, CarreauOptions
 from rigidfluid.materials.cross import Cross, CrossOptions
+from rigidfluid.materials.expression import ExpressionMaterial, ExpressionOptions
 from rigidfluid.materials.herschel_bulkley import HerschelBulkley, HerschelBulkleyOptions
 from rigidfluid.materials.power_law import PowerLaw, PowerLawOptions
 from rigidfluid.mechanisms.articulated import Articulated, ArticulatedOptions, RelativeStrokeTable
@@ -248,6 +249,8 @@ __all__ = [
     "Ellipsoid",
     "EllipsoidDetector",
     "EllipsoidOptions",
+    "ExpressionMaterial",
+    "ExpressionOptions",
     "FacetDetector",
     "FacetSurface",
     "Facets",

@@ -39,7 +39,7 @@ PARTS = {
     "mechanisms": "core.nested core.scene registry",
     "joints": "core.joints core.nested core.scene",
     "size_fields": "core.mesh core.scene",
-    "materials": "core.scene",
+    "materials": "core.nested core.scene",
 }
 """What built-in parts import besides the model and mechanics; obstacles of domains, components of mechanisms and drives
 of joints are tables in a scene."""

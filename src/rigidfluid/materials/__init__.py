@@ -7,6 +7,7 @@ from rigidfluid.hookspecs import hookimpl
 from rigidfluid.materials.bingham import Bingham
 from rigidfluid.materials.carreau import Carreau
 from rigidfluid.materials.cross import Cross
+from rigidfluid.materials.expression import ExpressionMaterial
 from rigidfluid.materials.herschel_bulkley import HerschelBulkley
 from rigidfluid.materials.power_law import PowerLaw
 
@@ -14,4 +15,4 @@ from rigidfluid.materials.power_law import PowerLaw
 @hookimpl
 def rigidfluid_materials() -> list[type[GeneralisedNewtonian]]:
     """The built-in materials."""
-    return [Carreau, Cross, PowerLaw, Bingham, HerschelBulkley]
+    return [Carreau, Cross, PowerLaw, Bingham, HerschelBulkley, ExpressionMaterial]

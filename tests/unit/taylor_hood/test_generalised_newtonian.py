@@ -10,12 +10,13 @@ from sheared_materials import (
     turning_torque,
 )
 
+from rigidfluid.backends.scikit_fem import ScikitFem
 from rigidfluid.core.fluid.material import Newtonian
 from rigidfluid.errors import StepRejected
 from rigidfluid.materials.carreau import Carreau, CarreauOptions
 from rigidfluid.taylor_hood.stepping import newton
 from rigidfluid.testing.fluid.boxes import samples
-from rigidfluid.testing.fluid.flow import figures
+from rigidfluid.testing.fluid.flow import Flow, figures
 
 
 def channel_error(name, divisions, dimension=2):
@@ -55,6 +56,16 @@ def test_the_torque_on_a_turning_disk_converges_with_the_fourth_order(name):
         torque = turning_flow(material, layers).advance.hydrodynamic_wrench.torque[0, 0]
         errors.append(abs(torque / -turning_torque(material) - 1.0))
     assert np.log2(errors[0] / errors[1]) > 3.6, errors
+
+
+@pytest.mark.parametrize("name", ["carreau", "bingham"])
+def test_blocks_solve_as_factors_do(name):
+    """In 3D, whose pressures are preconditioned by the viscosity of each cell."""
+    flow = channel_flow(materials(3)[name], 3, 3, inertia=True)
+    by_blocks = ScikitFem(ScikitFem.Options(tolerance=1e-11, solver="schur"), flow.backend.problem)
+    flows = [flow.after(0.1).after(0.1), Flow.start(by_blocks, flow.mesh, flow.pose).after(0.1).after(0.1)]
+    found = [each.fluid["velocity"] for each in flows]
+    np.testing.assert_allclose(found[1], found[0], atol=1e-8 * np.abs(found[0]).max())
 
 
 def test_without_thinning_it_is_newtonian():

@@ -7,8 +7,8 @@ from functools import partial
 import numpy as np
 import pytest
 
-from rigidfluid.core.case.expressions import VectorExpression
 from rigidfluid.core.fluid.conditions import PrescribedVelocity
+from rigidfluid.core.nested.expressions import VectorExpression
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.elements.surfaces import Surfaces, pressure_pin_vertex
 from rigidfluid.testing.fluid.boxes import box, box_with_balls

@@ -9,10 +9,10 @@ from functools import partial
 import numpy as np
 
 from rigidfluid.core.case.boundary_tables import Place
-from rigidfluid.core.case.expressions import Expression, VectorExpression
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.mechanics.wall_velocity import WallVelocity
+from rigidfluid.core.nested.expressions import Expression, VectorExpression
 from rigidfluid.core.scene.boundary_tables import PeriodicTable, PressureTable, VelocityTable, WallTable
 from rigidfluid.core.setup.boundary_data import BoundaryPressure, BoundaryVelocity, Profile, TimeFactor
 from rigidfluid.core.setup.profiles import Rectangle, couette, poiseuille, section

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from functools import partial
 
-from rigidfluid.core.case.expressions import VectorExpression
 from rigidfluid.core.fluid.material import Material, Newtonian
 from rigidfluid.core.mesh.size.size_interface import SizeField
 from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.model.selected import Selected
+from rigidfluid.core.nested.expressions import VectorExpression
 from rigidfluid.core.nested.part_options import build_part, read_part
 from rigidfluid.core.scene.all_errors import raise_all
 from rigidfluid.core.scene.fluid_table import FluidTable

@@ -1,4 +1,4 @@
-"""What discretisations and assemblies of backends that solve for Newtonian fluids alone need not have."""
+"""Base of discretisations and assemblies of backends that solve for Newtonian fluids alone."""
 
 from __future__ import annotations
 

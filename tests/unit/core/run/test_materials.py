@@ -40,6 +40,16 @@ def test_the_ledger_closes_as_in_a_newtonian_fluid(material, model):
     assert abs(ledgers[0].relative_residual) < 1.5 * abs(ledgers[1].relative_residual) + 1e-4
 
 
+def test_an_expression_flows_as_the_material_that_it_writes_out():
+    """CARREAU, whose time is 1 and exponent .4."""
+    flows = []
+    for material in (CARREAU, formula("0.01 + 0.19*(1 + shear_rate**2)**-0.3")["material"]):
+        it = Simulation(scene_from_dict(tables(material)))
+        it.go(0.06)
+        flows.append(it.state.twist.velocity[0])
+    assert flows[0] == pytest.approx(flows[1], rel=1e-9)
+
+
 def test_a_resumed_run_goes_on_with_the_same_bits(tmp_path):
     given = tables(CARREAU, output={"every": 0.1})
     rigidfluid.run(scene_from_dict(given), tmp_path / "whole")
@@ -63,6 +73,10 @@ def test_a_body_falls_faster_in_what_thins():
     assert speeds[1] > 1.05 * speeds[0]
 
 
+def formula(viscosity):
+    return {"material": {"type": "expression", "viscosity": viscosity}}
+
+
 REFUSED = {
     "both": ({"viscosity": 0.1}, "fluid.viscosity: found 0.1 and a material; allowed is one of both"),
     "no fluid": ({"backend": "dry"}, "fluid.material: found 'carreau' with backend 'dry'"),
@@ -72,6 +86,9 @@ REFUSED = {
     "misspelt key": ({"material": CARREAU | {"exponents": 0.4}}, "fluid.material.exponents.*exponent"),
     "missing key": ({"material": {"type": "carreau", "viscosity": 0.1}}, "fluid.material.relaxation_time"),
     "negative": ({"material": CARREAU | {"viscosity": -1.0}}, "fluid.material.viscosity"),
+    "formula of place": (formula("0.1 + x"), "fluid.material.viscosity: found an unknown name: 'x'"),
+    "formula of time": (formula("0.1 + t"), "fluid.material.viscosity: .* numbers, shear_rate, pi, "),
+    "infinite at rest": (formula("1/shear_rate"), "fluid.material.viscosity: found inf at rest"),
     "key of another": ({"material": CARREAU | {"yield_stress": 1.0}}, "fluid.material.yield_stress"),
 }
 

@@ -14,13 +14,13 @@ import pytest
 import rigidfluid
 from rigidfluid.backends.scikit_fem.backend import ScikitFem
 from rigidfluid.core.case.boundary_values import BoundaryPressure, BoundaryVelocity
-from rigidfluid.core.case.expressions import Expression, VectorExpression
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.case.system import build_system
 from rigidfluid.core.fluid.conditions import PrescribedPressure, PrescribedVelocity
 from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.geometry.surface import Plane
+from rigidfluid.core.nested.expressions import Expression, VectorExpression
 from rigidfluid.core.setup.boundary_samples import quadrature
 from rigidfluid.core.setup.profiles import Rectangle, poiseuille, section
 from rigidfluid.domains.box import Box, BoxOptions

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from rigidfluid.core.case.expressions import LONGEST, Expression, VectorExpression
+from rigidfluid.core.nested.expressions import LONGEST, Expression, VectorExpression
 from rigidfluid.errors import SceneError
 
 POINTS = np.array([[0.0, 0.5], [1.0, -0.25], [2.0, 4.0]])

@@ -65,7 +65,7 @@ class Expression:
 
     def __init__(self, source: float | str, at: str, dimension: int, where: str = "") -> None:
         self.source, self.at = source, f"{at}{where}"
-        self._value, self.names = _compiled(source, at, dimension)
+        self._value, self.names = _compiled(source, at, (*_COORDINATES[:dimension], "t", "pi"))
 
     def __call__(self, time: float, points: FloatArray) -> FloatArray:
         """Values (N,) at ``points`` (N, d) [length]."""
@@ -102,8 +102,23 @@ class VectorExpression:
         return np.stack([component(time, points) for component in self.components], axis=1)
 
 
-def _compiled(source: float | str, at: str, dimension: int) -> tuple[Operation, frozenset[str]]:
-    """Compile a source to a function of its names' values, and collect these names."""
+def formula(source: str, at: str, variable: str) -> Callable[[FloatArray], FloatArray]:
+    """Function (N,) → (N,) of one ``variable`` and pi by a ``source`` under the key ``at``; values need not be finite.
+
+    Raises SceneError for an invalid formula.
+    """
+    value, _ = _compiled(source, at, (variable, "pi"))
+
+    def evaluate(values: FloatArray) -> FloatArray:
+        with np.errstate(all="ignore"):
+            found = np.asarray(value({variable: values, "pi": np.asarray(np.pi)}), dtype=float)
+        return np.broadcast_to(found, values.shape).copy()
+
+    return evaluate
+
+
+def _compiled(source: float | str, at: str, known: tuple[str, ...]) -> tuple[Operation, frozenset[str]]:
+    """Compile a source to a function of the values of ``known`` names, and collect those that it has."""
     if not isinstance(source, str):
         return _constant(source), frozenset()
     text = " ".join(source.split())
@@ -114,9 +129,9 @@ def _compiled(source: float | str, at: str, dimension: int) -> tuple[Operation, 
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         place = f", at character {error.offset}" if isinstance(error, SyntaxError) and error.offset else ""
         found = f"{source!r}, which is no formula{place}"
-        raise SceneError(at, found, _allowed(_COORDINATES[:dimension]), "Correct it there.") from None
+        raise SceneError(at, found, _allowed(known), "Correct it there.") from None
     names = frozenset(node.id for node in ast.walk(tree) if isinstance(node, ast.Name))
-    return _Reader(text, at, _COORDINATES[:dimension]).operation(tree.body), names
+    return _Reader(text, at, known).operation(tree.body), names
 
 
 @dataclass(frozen=True)
@@ -125,7 +140,7 @@ class _Reader:
 
     text: str
     at: str
-    coordinates: tuple[str, ...]
+    known: tuple[str, ...]
 
     def operation(self, node: ast.expr, depth: int = 0) -> Operation:
         """Compile a node of the syntax tree to a function of the names' values."""
@@ -162,12 +177,11 @@ class _Reader:
             raise self._refusal(node, "too large", "Choose units in which it is nearer to 1.") from None
 
     def _name(self, node: ast.expr, name: str) -> Operation:
-        known = (*self.coordinates, "t", "pi")
-        if name in known:
+        if name in self.known:
             return lambda names: names[name]
         if name in _FUNCTIONS:
             raise self._refusal(node, "a function without arguments", f"Write {name}(…).")
-        remedy = suggestion(name, [*known, *_FUNCTIONS]) or f"The names here are {', '.join(known)}."
+        remedy = suggestion(name, [*self.known, *_FUNCTIONS]) or f"The names here are {', '.join(self.known)}."
         raise self._refusal(node, "an unknown name", remedy)
 
     def _call(self, node: ast.expr, name: str, arguments: list[Operation]) -> Operation:
@@ -181,11 +195,11 @@ class _Reader:
     def _refusal(self, node: ast.expr, found: str, remedy: str) -> SceneError:
         part = ast.get_source_segment(self.text, node) or self.text
         place = f"{part!r} at character {node.col_offset + 1} of {self.text!r}"
-        return SceneError(self.at, f"{found}: {place}", _allowed(self.coordinates), remedy)
+        return SceneError(self.at, f"{found}: {place}", _allowed(self.known), remedy)
 
 
-def _allowed(coordinates: Sequence[str]) -> str:
-    return f"numbers, {', '.join([*coordinates, 't', 'pi'])}, + - * / **, < <= > >=, and {', '.join(_FUNCTIONS)}"
+def _allowed(known: Sequence[str]) -> str:
+    return f"numbers, {', '.join(known)}, + - * / **, < <= > >=, and {', '.join(_FUNCTIONS)}"
 
 
 def _constant(number: float) -> Operation:
