@@ -72,6 +72,7 @@ SUBJECTS = {
         "adaptive_step": "Steps by a tolerance: when they pay",
         "step": "One step compared with the same step in NGSolve",
         "contact_step": "What a step with contacts costs",
+        "sheared_disks": "200 disks in a sheared periodic cell: seconds and memory of its steps",
         "step_profile": "Where the time of a step goes, in twelve classes of scenes",
         "settling_sphere": "Steps in 3D: iterations, time and memory",
         "parallel": "Many balls on several processes",
