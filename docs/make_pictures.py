@@ -20,6 +20,7 @@ PICTURES = {
     "bounce_in_fluid": Shown("vorticity", (0.008, 0.016, 0.024, 0.032), settings=("output.every=0.004",)),
     "clot_in_blood": Shown("speed", (0.12, 0.2, 0.25)),
     "cold_disk": Shown("scalar", (2.0, 6.0, 10.0, 14.0)),
+    "channel_of_disks": Shown("speed", (12.0, 36.0)),
     "dfg_2d2": Shown("vorticity", (3.0, 7.0)),
     "dfg_2d3": Shown("vorticity", (2.0, 4.0, 6.0)),
     "dfg_cylinder": Shown("streamlines", (15.0,), (-0.2, -0.2, 0.6, 0.21)),

@@ -29,7 +29,8 @@ SUBJECTS = {
         "wakes": "A fast disk and its wake: the effect of finer cells behind it",
         "window": "A short mesh moves with a disk in a long channel: compared with a mesh of the whole channel",
         "walls": "Curved and oblique walls: errors against exact flows, and their order",
-        "migration_in_channel": "A disk migrates to its height in a channel: path compared with Pan and Glowinski (2002)",
+        "migration_in_channel": "A disk migrates in a channel: path compared with Pan and Glowinski (2002)",
+        "channel_of_disks": "72 disks in a channel at Re 1000: share across it compared with Chen et al. (2012)",
         "stenosis": "Two disks pass a throat: case 7 of the paper",
     },
     "Contacts": {
@@ -76,6 +77,7 @@ SUBJECTS = {
         "adaptive_step": "Steps by a tolerance: when they pay",
         "step": "One step compared with the same step in NGSolve",
         "contact_step": "What a step with contacts costs",
+        "sheared_disks": "200 disks in a sheared periodic cell: seconds and memory of its steps",
         "step_profile": "Where the time of a step goes, in twelve classes of scenes",
         "settling_sphere": "Steps in 3D: iterations, time and memory",
         "parallel": "Many balls on several processes",
