@@ -186,7 +186,8 @@ The exact values are of an unbounded fluid: Brenner's series for a sphere that m
 coordinates for all that slides or rolls (Goldman, Cox and Brenner, Chem. Eng. Sci. 22 (1967) 637; O'Neill and Majumdar,
 Z. angew. Math. Phys. 21 (1970) 164), and Jeffery's series for twisting (Proc. Lond. Math. Soc. 14 (1915) 327).
 
-{within} of {count} loads are within {allowed} of the exact ones. Beyond it: {beyond}. The largest differences are
+{within} of {count} loads are within {allowed} of the exact ones. Beyond it: {beyond}. The largest
+differences are
 
 {worst}
 
@@ -196,9 +197,13 @@ The CPU time is that of all motions at a gap, and of their mesh.
 
 Radii 1 and 4 have `size_body` .5, half the smaller radius. The torque on the smaller sphere in sliding is a small part
 of force times radius. With cells of .25 in a box around that sphere, by `[[mesh.refine]]`, at a gap of {widest}
-({unknowns} unknowns):
+({unknowns} unknowns) these are:
 
 {finer}
+
+So what is off at wide gaps comes from the cells on the smaller sphere. In the thinnest films squeezing is off most: its
+pressure varies over √(R gap), R the smaller radius, and edges there are .12 of that, but no shorter than
+`size_body`/256.
 
 ## Opposite turning in place, and the box
 
@@ -209,5 +214,5 @@ proportion to 1/width. Off the exact ones of an unbounded fluid are
 {boxes}
 
 The last column is the limit of the last two boxes. What the force is off is {halved} of that in a box half as wide:
-it is the box, and not the film. The torque and, in the table above, the same spheres that roll as a pair without a load
-on it are not off so."""
+it is the box, and not the film. The torque is not off so, nor are the same spheres in the table above, which roll
+without a load on the pair."""
