@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 import rigidfluid
@@ -105,15 +105,32 @@ class Work:
 
     def rows(self, measure: Callable[[], Iterable[Row]]) -> list[Row]:
         """What the page measures; where docs/validation/measured/NAME.json has it, it is taken from there."""
-        start = cpu_seconds()
-        kept = KeptRows.read(self._rows) if self._rows.exists() and not self._fresh else None
-        if kept is None or (self._present and not kept.made.is_present):
+        start, kept = cpu_seconds(), self._kept_rows()
+        if kept is None:
             print(f"{self.folder.name}: measures", flush=True)
             found = list(measure())
             KeptRows(Made().now(round(cpu_seconds() - start, 1)), found).write(self._rows)
             kept = KeptRows.read(self._rows)
         self._note("rows", kept.made, kept.made.cpu_seconds, start)
         return kept.rows
+
+    def cases(self, measures: Mapping[str, Callable[[], Iterable[Row]]]) -> list[Row]:
+        """What the page measures in several cases, each with its name; where it was stopped, it goes on with the next
+        one."""
+        start, kept = cpu_seconds(), self._kept_rows() or KeptRows(Made(), [])
+        for case, measure in measures.items():
+            if all(row["case"] != case for row in kept.rows):
+                print(f"{self.folder.name}: measures {case}", flush=True)
+                begun, found = cpu_seconds(), [{"case": case, **row} for row in measure()]
+                kept = KeptRows(kept.made.now(round(cpu_seconds() - begun, 1)), [*kept.rows, *found])
+                kept.write(self._rows)
+        self._note("rows", kept.made, kept.made.cpu_seconds, start)
+        return [row for row in kept.rows if row["case"] in measures]
+
+    def _kept_rows(self) -> KeptRows | None:
+        """Rows that need not be measured."""
+        kept = KeptRows.read(self._rows) if self._rows.exists() and not self._fresh else None
+        return None if kept is None or (self._present and not kept.made.is_present) else kept
 
     def tests(self, path: Path) -> Found:
         """What the validation tests of a file have found."""

@@ -41,7 +41,7 @@ SUBJECTS = {
         "rebound_over_stokes": "Rebound over the Stokes number from 5 to 1,000, in 3D and 2D",
         "rebounds_after_falls": "Rebounds after falls at St 100, 152 and 742: one compared with Gondret et al. (2002)",
         "oblique_in_liquid": "Oblique impacts in a liquid: angles compared with those of dry impacts",
-        "resistances": "Spheres in narrow gaps: force compared with the exact series",
+        "resistances": "Spheres in narrow gaps: forces and torques of all motions compared with exact series",
         "explicit_coupling": "Light bodies, contacts and new meshes: one system compared with explicit coupling",
         "stability": "Extreme contacts and densities: which runs succeed, and which fail",
         "contact_stepping": "Substeps and implicit steps: error against run time",

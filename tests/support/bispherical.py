@@ -55,6 +55,13 @@ def relative_motion(gap: float, radius_b: float) -> FloatArray:
     return np.array([[1.0, -arm_a, -1.0, -arm_b], [0.0, -1.0, 0.0, 1.0]])
 
 
+def free_twists(resistance: FloatArray, relative: FloatArray, wanted: FloatArray) -> FloatArray:
+    """Velocities (m,) of a pair with a ``wanted`` relative motion (r,) = ``relative`` (r, m) velocities, by which no
+    load acts on the pair as a whole; ``resistance`` (m, m) is that of both bodies."""
+    moved = np.linalg.solve(resistance, relative.T)
+    return np.asarray(moved @ np.linalg.solve(relative @ moved, wanted))
+
+
 @cache
 def twisting(gap: float, radius_b: float) -> FloatArray:
     """Resistance of spheres of radius 1 and ``radius_b`` to angular velocities along the axis, with viscosity 1,

@@ -1,8 +1,9 @@
-"""Forces in narrow gaps in 3D Stokes flow, against Brenner's series and Lamb's solution of two spheres."""
+"""Forces and torques in narrow gaps in 3D Stokes flow, against exact series."""
 
 import numpy as np
 import pytest
 from falling import SCENES
+from near_spheres import MOTIONS, NearSpheres
 from published import brenner, drag_of_approach
 from two_spheres import drag_across
 
@@ -35,6 +36,17 @@ def test_two_spheres_are_held_back_by_the_film_between_them():
 @pytest.mark.validation
 def test_two_spheres_drag_each_other_as_they_pass():
     assert force("two_spheres.toml", [*PAIR, *ACROSS], "fx") == pytest.approx(drag_across(GAP), rel=0.02)
+
+
+def test_unequal_spheres_resist_squeezing_sliding_rolling_and_twisting():
+    """Of radii 1 and 4, forces and torques on both."""
+    spheres = NearSpheres(4.0, size_body=1.0)
+    simulation, loads = spheres.simulation(GAP, 30.0), {}
+    for motion in MOTIONS:
+        loads |= {f"{motion}: {load}": pair for load, pair in spheres.loads(simulation, motion, GAP).items()}
+    exact, found = ({name: pair[which] for name, pair in loads.items()} for which in (0, 1))
+    assert len(loads) == 8
+    assert found == pytest.approx(exact, rel=0.01)
 
 
 def test_the_exact_forces_have_their_limits():

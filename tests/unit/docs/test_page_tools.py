@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -176,6 +177,28 @@ def test_rows_are_measured_once_and_kept_with_what_has_made_them(tmp_path: Path)
     present, rows = rows_from(present=True)
     assert rows == [{"gap": 0.2, "number": 3}]
     assert (present.outdated, len(asked)) == ({}, 3)
+
+
+def test_cases_that_were_measured_before_a_stop_are_not_measured_again(tmp_path: Path) -> None:
+    asked: list[str] = []
+
+    def cases_of(*names: str, **how: bool) -> list[dict[str, object]]:
+        def measure(name: str) -> list[dict[str, object]]:
+            if name == "stopped":
+                raise KeyboardInterrupt
+            asked.append(name)
+            return [{"found": name}]
+
+        work = Work("page", runs=tmp_path, measured=tmp_path / "measured", **how)
+        return list(work.cases({name: partial(measure, name) for name in names}))
+
+    with pytest.raises(KeyboardInterrupt):
+        cases_of("first", "stopped")
+    assert cases_of("first", "second") == [{"case": name, "found": name} for name in ("first", "second")]
+    assert asked == ["first", "second"]
+    assert cases_of("second") == [{"case": "second", "found": "second"}]
+    cases_of("first", fresh=True)
+    assert asked == ["first", "second", "first"]
 
 
 def test_rows_that_no_file_can_hold_replace_none(tmp_path: Path) -> None:
