@@ -139,7 +139,7 @@ def _figures(run: Run, found: Statistics) -> Iterator[tuple[str, str]]:
 ABOUT = """`scenes/channel_of_disks.toml`: 72 disks of the fluid's density fill 16.9 % of a periodic channel that is
 four times as long as high. The drop of pressure is held; without disks it drives a flow with a greatest velocity of 1,
 and Re is 1000 with this velocity and the height. The fluid starts with that flow, and the disks, seeded by
-`[[swarm]]`, at rest. This is the scene of the repository EllipsesInFlows (N. Hori, `docs/source/examples/case4`),
+`[[swarm]]`, at rest. This is the scene of the repository EllipsesInFlows (N. Hori, its example `case4`),
 which followed disks to a time of 1000 and compares their share across the channel with that of Chen, Pan and Chang
 (Phys. Fluids 24 (2012)). Here two cores, shared with other work, came to {end}.
 

@@ -131,7 +131,7 @@ diameter is a quarter of the width. A pressure drop of 2.337e-4, at a viscosity 
 rest. The disk migrates to a height between the wall and the middle, from both sides (Segré and Silberberg). Pan and
 Glowinski (J. Comput. Phys. 181 (2002) 260) computed it from .4 with fictitious domains; at
 the end their disk is at {last}. Their path, and these numbers of their scene, are those that the repository
-EllipsesInFlows (N. Hori, `docs/source/examples/case2`) took from their paper.
+EllipsesInFlows (N. Hori, its example `case2`) took from their paper.
 
 {rows}
 

@@ -115,4 +115,4 @@ The cell is periodic along them.
 {figures}
 
 Seconds are CPU time of one core; the start is loading, seeding and the first mesh. Memory is that of the process after
-each step, and bounded where the second half of the steps takes no more than the first."""
+each step; it changes with the mesh."""
