@@ -19,8 +19,8 @@ from rigidfluid.registry import KINDS, Kind, Registry
 P = TypeVar("P", bound=Part)
 S = TypeVar("S", bound=SpatialPart)
 
-_PLACELESS = tuple(f"{kind.table}." for kind in KINDS)
-"""First words of a key in errors of parts, which do not know the place of their table."""
+_PLACELESS = sorted((f"{kind.table}." for kind in KINDS), key=len, reverse=True)
+"""First words of a key in errors of parts, which do not know the place of their table; longer ones first."""
 
 
 class NamesPart(Protocol):

@@ -116,3 +116,17 @@ def test_steps_are_expected_to_cost_twice_as_much():
         costs.append(backend.solver_cost(1000.0, 100.0))
     assert costs[0].step_seconds == 2.0 * costs[1].step_seconds
     assert costs[0].memory == costs[1].memory
+
+
+@pytest.mark.parametrize("model", ["navier-stokes", "stokes"])
+def test_a_steady_flow_at_the_start_stays_as_it_is(model):
+    """Past a fixed disk, in a fluid that thins."""
+    given = tables(CARREAU, model, boundary=[{"on": "left", "type": "velocity", "velocity": ["4*y*(1-y)", "0"]}])
+    given["fluid"] |= {"initial": "steady", "gravity": [0.0, 0.0]}
+    given["body"] = [DISK | {"fixed": True}]
+    given["boundary"].append({"on": "right", "type": "pressure", "pressure": 0.0})
+    it = Simulation(scene_from_dict(given))
+    before = it.fields().velocity
+    it.step()
+    it.step()
+    assert abs(it.fields().velocity - before).max() < 1e-6 * abs(before).max()
