@@ -22,6 +22,10 @@ ACROSS = 4.0
 RINGS = 9
 """Rings of edges around flat cells that are solved with them: there the film is thin too."""
 
+MOST = 20
+"""Greatest number of vertices in those rings, over the number of vertices of flat cells. In films of .002 to
+.0001 radii it is 2 to 9; around a few flat cells of a coarse mesh nine rings are the whole mesh."""
+
 _NOWHERE = -1
 """Number of the surface of vertices that are on none."""
 
@@ -44,7 +48,7 @@ class Films:
         numbering = constraint.surfaces.numbering
         points, surface = parts.points[: numbering.vertices], _surface_numbers(constraint.surfaces)
         vertices = vertices_of_films(numbering.cells, points, surface)
-        self._which = _unknowns_of(parts, _with_rings(numbering, vertices))
+        self._which = _unknowns_of(parts, with_rings(numbering, vertices))
         self._rows = constraint.transposed[self._which] @ parts.system_matrix @ constraint.matrix
         self._factors = factorise(self._rows[:, self._which].tocsr()) if len(self._which) else None
 
@@ -94,13 +98,17 @@ def _surface_numbers(surfaces: Surfaces) -> IntArray:
     return number[: surfaces.numbering.vertices]
 
 
-def _with_rings(numbering: Numbering, vertices: IntArray) -> IntArray:
-    """The ``vertices`` (v,) and all up to RINGS edges from them, ascending."""
-    chosen = np.zeros(numbering.vertices, dtype=bool)
-    chosen[vertices] = True
-    for _ in range(RINGS if len(vertices) else 0):
-        chosen[numbering.edges[chosen[numbering.edges].any(axis=1)]] = True
-    return np.flatnonzero(chosen)
+def with_rings(numbering: Numbering, vertices: IntArray) -> IntArray:
+    """The ``vertices`` (v,) and all up to RINGS edges from them if they are no more than MOST times as many,
+    ascending."""
+    chosen = vertices
+    for _ in range(RINGS):
+        near = np.isin(numbering.edges, chosen).any(axis=1)
+        wider = np.unique(numbering.edges[near])
+        if len(wider) > MOST * len(vertices):
+            break
+        chosen = wider
+    return chosen
 
 
 def _unknowns_of(parts: Parts, vertices: IntArray) -> IntArray:

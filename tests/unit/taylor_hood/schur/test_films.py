@@ -5,11 +5,14 @@ import pytest
 from bispherical import resistance
 from paths import SCENES
 from published import torque_of_twist
+from skfem import MeshTet
 
 from rigidfluid.core.case.load import load_scene
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.run.simulation import Simulation
+from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.linear_solver.lagged_solver import LaggedSolver
-from rigidfluid.taylor_hood.schur.films import vertices_of_films
+from rigidfluid.taylor_hood.schur.films import MOST, RINGS, vertices_of_films, with_rings
 
 SPEED = 1e-6
 
@@ -37,6 +40,20 @@ def test_only_flat_cells_make_a_film() -> None:
 )
 def test_a_flat_cell_is_in_a_film_between_two_surfaces_alone(surface: list[int], film: bool) -> None:
     assert bool(len(vertices_of_films(CELLS, CORNERS, np.array(surface)))) == film
+
+
+def test_rings_around_few_vertices_are_not_the_whole_mesh() -> None:
+    grid = MeshTet.init_tensor(*(np.arange(21.0),) * 3)
+    numbering = Numbering.from_mesh(Mesh(grid.p.T, grid.t.T, np.zeros((0, 3), dtype=np.int64), np.zeros(0, dtype=int)))
+    plate = np.flatnonzero(grid.p[2] == 0.0)
+    near = with_rings(numbering, plate)
+    assert grid.p[2, near].max() == RINGS
+    assert len(near) == (RINGS + 1) * len(plate)
+    middle = np.flatnonzero((grid.p == 10.0).all(axis=0))
+    around = with_rings(numbering, middle)
+    np.testing.assert_array_equal(np.abs(grid.p[:, around] - 10.0).max(), 1.0)
+    assert 1 < len(around) <= MOST
+    assert not len(with_rings(numbering, middle[:0]))
 
 
 def torques(gap: float, mesh: list[str], *spins: tuple[list[float], str]) -> list[float]:
