@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rigidfluid.core.case.expressions import Expression
 from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.nested.expressions import Expression
 from rigidfluid.core.scene.all_errors import raise_all
 from rigidfluid.core.scene.scalar_table import ScalarBodyTable, ScalarBoundaryTable, ScalarTable
 from rigidfluid.core.scene.spelling import suggestion
