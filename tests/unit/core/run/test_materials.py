@@ -7,7 +7,7 @@ import rigidfluid
 from rigidfluid.api import Simulation, model_of, scene_from_dict
 from rigidfluid.core.setup.assemble import assemble
 from rigidfluid.core.setup.features import features
-from rigidfluid.errors import PluginError, RigidfluidError, SceneError
+from rigidfluid.errors import PluginError, RigidfluidError, SceneError, StepError
 
 DISK = {"type": "sphere", "radius": 0.12, "position": [0.5, 0.6], "density": 3.0}
 CARREAU = {
@@ -101,6 +101,13 @@ def test_wrong_tables_are_refused(fluid, found):
     given["fluid"] |= fluid
     with pytest.raises((SceneError, PluginError), match=found):
         Simulation(scene_from_dict(given))
+
+
+@pytest.mark.parametrize("formula", ["0.1 - shear_rate", "sqrt(0.1 - shear_rate)", "1/(shear_rate < 0.1)"])
+def test_an_expression_that_fails_at_a_shear_rate_is_told_with_it(formula):
+    it = Simulation(scene_from_dict(tables({"type": "expression", "viscosity": formula})))
+    with pytest.raises(StepError, match=r"fluid\.material\.viscosity.*at a shear rate of .*shear_rate"):
+        it.go()
 
 
 def test_a_backend_for_newtonian_fluids_refuses_others():
