@@ -11,8 +11,8 @@ from packaging.utils import canonicalize_name
 from paths import ROOT
 
 from rigidfluid import regular_file
-from rigidfluid.core.case import expressions
 from rigidfluid.core.mesh.generation.inserter import MESHER_TIMEOUT
+from rigidfluid.core.nested import expressions
 from rigidfluid.core.nested.rows import MOST_ROWS
 from rigidfluid.core.scene.validation import LARGEST, SMALLEST
 from rigidfluid.core.setup.model_checks import MOST_STEPS

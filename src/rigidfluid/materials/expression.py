@@ -11,7 +11,7 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.generalised_newtonian import GeneralisedNewtonian
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.nested.expressions import formula
-from rigidfluid.errors import SceneError
+from rigidfluid.errors import SceneError, StepRejected
 
 
 class ExpressionOptions(PartOptions):
@@ -40,4 +40,11 @@ class ExpressionMaterial(GeneralisedNewtonian):
 
     def viscosity(self, shear_rate: FloatArray) -> FloatArray:
         """μ, (N,) [mass·length^(2-d)/time]."""
-        return self._formula(shear_rate)
+        found = self._formula(shear_rate)
+        wrong = np.flatnonzero(~((found > 0.0) & (found < np.inf)))
+        if len(wrong):
+            value, rate = found[wrong[0]], shear_rate[wrong[0]]
+            told = f"{value:.3g} at a shear rate of {rate:.3g} from {self.options.viscosity!r}"
+            remedy = "Shorten time.step; if that does not help, bound it there, as with max(…)."
+            raise StepRejected("fluid.material.viscosity", told, "a finite number above 0", remedy)
+        return found

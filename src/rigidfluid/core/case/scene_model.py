@@ -163,7 +163,7 @@ def _with_scalar(fluid: Fluid | NoFluid, table: ScalarTable, domain: Domain, bod
         found = f"one with backend {fluid.backend.part.name!r}"
         raise SceneError("scalar", found, "a backend with a fluid", "Choose backend = 'scikit-fem'.")
     names = [body.name for body in bodies]
-    return replace(fluid, scalar=scene_scalar(table, domain.pieces, names, domain.dimension))
+    return replace(fluid, scalar=scene_scalar(table, domain, names))
 
 
 def _names_used(scene: Scene) -> set[str]:

@@ -11,7 +11,7 @@ from rigidfluid.core.scene.vectors import Formula
 class ScalarBoundaryTable(Table):
     """The scalar on a surface of the domain; nothing goes through those without a table, but with the fluid."""
 
-    on: str = Field(description="Name of a surface of the domain, or `all`")
+    on: str = Field(description="Name of a surface of the domain, or `all` that are not periodic")
     value: Formula | None = Field(
         default=None,
         description="Value that is held there, a number or an expression; with a condition of type `pressure` that of "

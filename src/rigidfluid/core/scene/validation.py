@@ -158,7 +158,8 @@ def _told(model: type[BaseModel], complaint: ErrorDetails, complaints: Sequence[
         return _missing_key(place, complaint["input"], str(complaint["loc"][-1]))
     if complaint["type"] == "missing":
         return _short_list(_place(model, complaint["loc"][:-1], at), complaint, complaints)
-    if complaint["type"] in ("tuple_type", "list_type"):
+    or_table = place.within is not None and complaint["loc"][-1] not in (place.key, place.type)
+    if complaint["type"] in ("tuple_type", "list_type") and not or_table:
         return _single_value(place, complaint["input"])
     return SceneError(place.field or "scene", value_text(complaint["input"]), allowed_by(complaint), _remedy(place))
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from rigidfluid.core.contact.laws.friction import Friction
 from rigidfluid.core.contact.laws.restitution import Restitution
+from rigidfluid.core.model.generalised_newtonian import GeneralisedNewtonian
 from rigidfluid.core.model.wrapped_law import bare, layer
 
 if TYPE_CHECKING:
@@ -47,6 +48,8 @@ def features(system: System, mesh: MeshTable | None, sources: int = 0, sinks: in
 def _fluid(problem: FluidProblem) -> Iterator[Feature]:
     model = "navier-stokes" if problem.inertia else "stokes"
     yield Feature("inertia of the fluid", problem.inertia, f"model {model!r}")
+    varies = isinstance(problem.material, GeneralisedNewtonian)
+    yield Feature("viscosity that varies", varies, f"material {problem.material.name!r}")
     outlets = [condition.name for condition in problem.conditions if condition.is_open]
     why = f"pressure is given on {', '.join(outlets)}" if outlets else "no face gives a pressure"
     yield Feature("pressure fixed by a constraint", not outlets, why)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import field, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.fluid.scalar import NO_FLUX, Buoyancy, ScalarCondition, ScalarProblem, ScalarValue
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.core.setup.checked import Number, Positive, checked
@@ -19,6 +21,9 @@ if TYPE_CHECKING:
     from rigidfluid.core.model.domain import Domain
     from rigidfluid.core.setup.fluid import Fluid
     from rigidfluid.core.setup.model import Model
+
+_IN_THE_FLUID = "initial", "source"
+"""Functions of a scalar that are evaluated anywhere in the fluid."""
 
 
 @checked
@@ -82,7 +87,7 @@ def with_scalar(problem: FluidProblem, scalar: Scalar, model: Model) -> FluidPro
     given = [scalar.on_bodies.get(name) for name in names]
     given += [scalar.on_faces.get(condition.name) for condition in problem.conditions]
     conditions = tuple(_condition(*each, model.domain) for each in zip(given, volumes, strict=True))
-    initial, source = (_in_each_image(value, model.domain) for value in (scalar.initial, scalar.source))
+    initial, source = (_checked_value(getattr(scalar, key), f"scalar.{key}", model.domain) for key in _IN_THE_FLUID)
     assert initial is not None
     return replace(problem, scalar=ScalarProblem(scalar.diffusivity, initial, conditions, source, buoyancy))
 
@@ -90,15 +95,22 @@ def with_scalar(problem: FluidProblem, scalar: Scalar, model: Model) -> FluidPro
 def _condition(given: ScalarOnSurface | None, volume: float, domain: Domain) -> ScalarCondition:
     if given is None:
         return NO_FLUX
-    value, flux = (_in_each_image(one, domain) for one in (given.value, given.flux))
+    value, flux = (_checked_value(getattr(given, key), f"{given.field}.{key}", domain) for key in ("value", "flux"))
     return ScalarCondition(value, flux, None if given.capacity is None else given.capacity * volume)
 
 
-def _in_each_image(value: ScalarValue | None, domain: Domain) -> ScalarValue | None:
-    """The ``value`` in a domain, the same in its images between periodic surfaces, where a mesh may go on."""
-    if value is None or not domain.periodic:
-        return value
-    return lambda time, points: value(time, domain.wrapped(points))
+def _checked_value(value: ScalarValue | None, at: str, domain: Domain) -> ScalarValue | None:
+    return None if value is None else partial(_values, value, at, domain)
+
+
+def _values(value: ScalarValue, at: str, domain: Domain, time: float, points: FloatArray) -> FloatArray:
+    """Values (N,) at ``points`` (N, d) of a domain and of its images between periodic surfaces, where a mesh may go on;
+    raises SceneError for others."""
+    found = np.asarray(value(time, domain.wrapped(points)))
+    if found.shape != points.shape[:1] or not np.isfinite(found).all():
+        told = f"values of shape {found.shape} at time {time:g}, or not finite"
+        raise SceneError(at, told, f"finite ones of shape {points.shape[:1]}", "Correct the function.")
+    return found
 
 
 def check_scalar(model: Model, fluid: Fluid) -> None:
@@ -111,8 +123,8 @@ def check_scalar(model: Model, fluid: Fluid) -> None:
         ask(_check_buoyancy, model, fluid, scalar)
         ask(_check_faces, model, scalar)
         ask(_check_bodies, model, scalar)
-        for name in ("initial", "source"):
-            ask(_check_function, model, f"scalar.{name}", getattr(scalar, name))
+        for key in _IN_THE_FLUID:
+            ask(_check_function, model, f"scalar.{key}", getattr(scalar, key))
 
 
 def _check_backend(model: Model, fluid: Fluid) -> None:
@@ -136,6 +148,11 @@ def _check_buoyancy(model: Model, fluid: Fluid, scalar: Scalar) -> None:
 def _check_faces(model: Model, scalar: Scalar) -> None:
     """Refuse conditions on no surface of the domain, and velocities that bring fluid in with nobody knows what."""
     _check_surfaces(scalar.on_faces, [piece.name for piece in model.domain.pieces])
+    for number in (number for pair in model.domain.periodic for number in pair):
+        name = model.domain.names[number]
+        if name in scalar.on_faces:
+            found, remedy = f"{name!r}, which is periodic", "Leave the table out: what leaves there comes in again."
+            raise SceneError(f"{scalar.on_faces[name].field}.on", found, "a surface where the fluid ends", remedy)
     for condition in model.conditions:
         given = scalar.on_faces.get(condition.name)
         if given is not None and given.capacity is not None:
@@ -165,9 +182,5 @@ def _check_surfaces(given: Mapping[str, ScalarOnSurface], known: list[str]) -> N
 
 def _check_function(model: Model, at: str, value: ScalarValue | None) -> None:
     """Refuse a function that gives no numbers at two corners of the domain."""
-    if value is None:
-        return
-    corners = np.array(model.domain.extent)
-    found = np.asarray(value(0.0, corners))
-    if found.shape != (len(corners),) or not np.isfinite(found).all():
-        raise SceneError(at, f"values of shape {found.shape}", f"finite ones of shape ({len(corners)},)", "Correct it.")
+    if value is not None:
+        _values(value, at, model.domain, 0.0, np.array(model.domain.extent))

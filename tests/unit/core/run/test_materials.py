@@ -4,8 +4,10 @@ import pytest
 from scenes import wet_tables
 
 import rigidfluid
-from rigidfluid.api import Simulation, scene_from_dict
-from rigidfluid.errors import PluginError, RigidfluidError, SceneError
+from rigidfluid.api import Simulation, model_of, scene_from_dict
+from rigidfluid.core.setup.assemble import assemble
+from rigidfluid.core.setup.features import features
+from rigidfluid.errors import PluginError, RigidfluidError, SceneError, StepError
 
 DISK = {"type": "sphere", "radius": 0.12, "position": [0.5, 0.6], "density": 3.0}
 CARREAU = {
@@ -101,12 +103,28 @@ def test_wrong_tables_are_refused(fluid, found):
         Simulation(scene_from_dict(given))
 
 
+@pytest.mark.parametrize("formula", ["0.1 - shear_rate", "sqrt(0.1 - shear_rate)", "1/(shear_rate < 0.1)"])
+def test_an_expression_that_fails_at_a_shear_rate_is_told_with_it(formula):
+    it = Simulation(scene_from_dict(tables({"type": "expression", "viscosity": formula})))
+    with pytest.raises(StepError, match=r"fluid\.material\.viscosity.*at a shear rate of .*shear_rate"):
+        it.go()
+
+
 def test_a_backend_for_newtonian_fluids_refuses_others():
     given = tables(CARREAU)
     given["fluid"]["backend"] = "ngsolve"
     pytest.importorskip("ngsolve")
     with pytest.raises(RigidfluidError, match=r"fluid\.material: found Carreau with backend 'ngsolve'"):
         Simulation(scene_from_dict(given))
+
+
+@pytest.mark.parametrize(
+    ("material", "told"), [(CARREAU, (True, "material 'carreau'")), (None, (False, "material 'newtonian'"))]
+)
+def test_check_tells_the_material(material, told):
+    system = assemble(model_of(scene_from_dict(tables(material))))
+    found = {feature.name: (feature.on, feature.why) for feature in features(system, None)}
+    assert found["viscosity that varies"] == told
 
 
 def test_steps_are_expected_to_cost_twice_as_much():

@@ -145,6 +145,20 @@ def test_a_disk_that_crosses_periodic_surfaces_takes_its_content_along() -> None
     assert history.scalar_fluxes["value"][disk][-1] < 2.0
 
 
+PERIODIC = [{"on": "left", "type": "periodic"}, {"on": "right", "type": "periodic"}]
+
+
+def test_nothing_is_held_where_the_domain_is_periodic() -> None:
+    """By a table on all surfaces: a scalar that differs in y alone does not see the seam."""
+    held = [{"on": "all", "value": 1.0}]
+    posed = scene({"boundary": held, "initial": "1 + y", "body": []}, boundary=PERIODIC)
+    fluid = model_of(posed).fluid
+    assert fluid.scalar is not None
+    assert sorted(fluid.scalar.on_faces) == ["bottom", "top"]
+    with pytest.raises(SceneError, match=r"scalar.boundary.0.on: found 'right', which is periodic"):
+        model_of(scene({"boundary": [{"on": "right", "flux": 1.0}]}, boundary=PERIODIC))
+
+
 def test_bodies_do_not_enter_or_leave_a_fluid_with_a_scalar() -> None:
     with pytest.raises(SceneError, match=r"scalar: found together with bodies that enter or leave"):
         model_of(scene(sink=[{"on": "top"}]))
@@ -166,6 +180,18 @@ def test_a_model_of_objects_has_one_too(tmp_path: Path) -> None:
         replace(made, fluid=replace(made.fluid, scalar=Scalar(0.02, hot, on_bodies={"dsk": ScalarOnSurface(hot)})))
     with pytest.raises(SceneError, match=r"scalar.initial: found values of shape \(2, 2\)"):
         replace(made, fluid=replace(made.fluid, scalar=Scalar(0.02, lambda time, points: points)))
+
+
+@pytest.mark.parametrize("key", ["value", "flux"])
+@pytest.mark.parametrize("on", ["on_faces", "on_bodies"])
+@pytest.mark.parametrize("wrong", [lambda time, points: points, lambda time, points: np.full(len(points), np.nan)])
+def test_a_function_with_no_numbers_on_a_surface_is_told_by_name(key: str, on: str, wrong: Any) -> None:
+    made, name = model_of(scene(time={"end": 0.01, "step": 0.01})), {"on_faces": "left", "on_bodies": "disk"}[on]
+    assert isinstance(made.fluid, Fluid)
+    surface = ScalarOnSurface(**{key: wrong, "field": f"scalar.{on}.{name}"})
+    scalar = Scalar(0.02, lambda time, points: np.ones(len(points)), **{on: {name: surface}})
+    with pytest.raises(SceneError, match=rf"scalar.{on}.{name}.{key}: found values of shape"):
+        rigidfluid.run(replace(made, fluid=replace(made.fluid, scalar=scalar)))
 
 
 def test_a_backend_without_scalars_is_refused_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
