@@ -116,7 +116,7 @@ def test_values_far_apart_are_on_a_logarithmic_axis(tmp_path: Path) -> None:
         (GRAVITY.replace("gravity", "gravty"), ("fluid.gravty", "a key that nothing reads", "Did you mean 'gravity'?")),
         ("[parameters]\nbody.0.density = ['heavy']\n", ("body.0.density", "'heavy'", "a valid number")),
         ("[parameters]\nbody.0.density = 2.0\n", ("parameters.body.0.density", "2.0", "a list", "in brackets: [2.0]")),
-        ("[parameters]\nbody.0.density = []\n", ("parameters.body.0.density", "[]", "at least 1 item")),
+        ("[parameters]\nbody.0.density = []\n", ("parameters.body.0.density", "[]", "at least 1 entry")),
         (GRAVITY + "[vary]\nfluid.gravity.1 = [-1.0]\n", ("parameters.fluid.gravity.1", "a key of [vary] too")),
         (f"[parameters]\nbody.0.density = {[1.0] * 5001}\n{STEPS}", ("parameters", "10002 runs", "at most 10000")),
         (f'group = "time.step"\n{GRAVITY}{STEPS}', ("study.group", "nothing with parameters")),
