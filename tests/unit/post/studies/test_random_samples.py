@@ -196,7 +196,7 @@ def test_the_plot_shows_samples_quantiles_and_indices(tmp_path: Path) -> None:
         (random_table(8, "fluid.gravity.1 = [1.0]\n"), ("random.parameters.fluid.gravity.1", "[1.0]")),
         (random_table(8, DENSITY.replace("density", "densty")), ("body.0.densty", "Did you mean 'density'?")),
         (random_table(1, DENSITY), ("random.number", "1", "greater than or equal to 2")),
-        (random_table(8), ("random.parameters", "at least 1 item")),
+        (random_table(8), ("random.parameters", "at least 1 entry")),
         (random_table(20000, DENSITY), ("random", "20000 runs", "at most 10000", "fewer samples")),
         (random_table(4096, DENSITY, more="indices = true"), ("random", "12288 runs", "at most 10000")),
         (random_table(100, DENSITY, more="indices = true"), ("random.number", "100", "a power of 2", "64 or 128")),
