@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
+from types import FunctionType
 from typing import TYPE_CHECKING, Any, NamedTuple
 from warnings import filterwarnings
 
 import numpy as np
 
+from rigidfluid.core.geometry.answers import refuse_others
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.value_types import describe
+from rigidfluid.core.geometry.wrong import Wrong
 from rigidfluid.error_text import error_text
 from rigidfluid.errors import PluginError
 
@@ -39,6 +43,17 @@ class PairFormula(NamedTuple):
 
     function: Formula
     parameters: FloatArray
+
+
+def refuse_no_formula(answer: Any, *_: Any, **__: Any) -> None:
+    """Refuse what is neither None nor a formula with a function and a row of numbers."""
+    if answer is None:
+        return
+    refuse_others(answer, PairFormula)
+    refuse_others(answer.function, FunctionType, "function")
+    numbers = np.asarray(answer.parameters)
+    if numbers.ndim != 1 or numbers.dtype.kind not in "fiu":
+        raise Wrong(f"parameters {describe(numbers)}", "a row of real numbers")
 
 
 def own_formula(law: ForceLaw) -> PairFormula | None:

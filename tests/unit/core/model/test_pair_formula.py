@@ -43,6 +43,20 @@ def test_a_formula_that_cannot_be_compiled_is_refused_by_name(function):
         compiled(function)
 
 
+@pytest.mark.parametrize(
+    "answer", [(inverse, [1.0]), PairFormula("inverse", [1.0]), PairFormula(inverse, 1.0), PairFormula(inverse, ["1"])]
+)
+def test_what_is_no_formula_is_refused_by_its_law(answer):
+    class Odd(NormalLaw):
+        name = "odd"
+
+        def pair_formula(self):
+            return answer
+
+    with pytest.raises(PluginError, match="force law 'odd', pair_formula: found"):
+        own_formula(Odd(NormalLaw.Options(epsilon=1.0), 0.1))
+
+
 def test_parameters_may_be_a_list_of_integers():
     formula = own_formula(InverseLaw(NormalLaw.Options(epsilon=1.0), 0.1))
     assert formula is not None

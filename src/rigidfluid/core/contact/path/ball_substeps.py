@@ -13,6 +13,7 @@ from rigidfluid.core.model.detection import Sight
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.pair_formula import PairFormula, compiled, own_formula
+from rigidfluid.core.model.part_results import refuse_no_number
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Wrench
 
@@ -41,6 +42,7 @@ class BallSubsteps:
             self._formula, self._law, tuple(balls), near.radii, around, now, pushed, tuple(span)
         )
         refuse_overlap(self._system, nearest, gap)
+        refuse_no_number("contacts", "velocity after forces by a law's formula", balls.velocity, "contact.law")
         if anew:
             near.keep(PairList(*made))
         self._dynamics.place(balls, span.left - left)
