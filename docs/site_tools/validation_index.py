@@ -29,7 +29,7 @@ SUBJECTS = {
         "wakes": "A fast disk and its wake: the effect of finer cells behind it",
         "window": "A short mesh moves with a disk in a long channel: compared with a mesh of the whole channel",
         "walls": "Curved and oblique walls: errors against exact flows, and their order",
-        "migration_in_channel": "A disk migrates to its height in a channel: path compared with Pan and Glowinski (2002)",
+        "migration_in_channel": "A disk migrates to its height in a channel: compared with Pan and Glowinski (2002)",
         "stenosis": "Two disks pass a throat: case 7 of the paper",
     },
     "Contacts": {

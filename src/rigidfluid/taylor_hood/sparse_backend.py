@@ -28,7 +28,7 @@ _DEAR = 1.0
 """Factors in 3D that are predicted to take as many seconds, with 22,000 unknowns and 180 MB, cost more than blocks."""
 
 _ITERATED = 2.0
-"""What a step costs with a viscosity that varies, over one without: for a falling disk it was 1.8 and 2.0."""
+"""Cost of a step with a viscosity that varies over that of one without: for a falling disk it was 1.8 and 2.0."""
 
 
 class SparseOptions(TaylorHoodOptions):

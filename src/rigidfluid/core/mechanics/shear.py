@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.fluid.material import Newtonian
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.wall import Wall
+from rigidfluid.core.model.generalised_newtonian import GeneralisedNewtonian
 from rigidfluid.core.model.system import System
 
 _OPPOSITE = -1.0 + 1e-9
@@ -38,7 +38,7 @@ def shear_of_walls(system: System) -> Shear | None:
         (one, two, normal) for (one, normal), (two, other) in combinations(flat, 2) if normal @ other < _OPPOSITE
     ]
     material = system.fluid.material
-    viscosity = material.dynamic_viscosity if isinstance(material, Newtonian) else None
+    viscosity = None if isinstance(material, GeneralisedNewtonian) else material.dynamic_viscosity
     found = [_shear(one, two, normal, middle, viscosity) for one, two, normal in opposite]
     moving = [shear for shear in found if shear.rate > 0.0]
     return moving[0] if len(moving) == 1 else None

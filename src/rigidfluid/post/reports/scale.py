@@ -18,7 +18,7 @@ from rigidfluid.core.geometry.arrays import FloatArray
 COLOURMAP, SIGNED_COLOURMAP, HOT_COLOURMAP = "viridis", "RdBu_r", "inferno"
 Quantity = Literal["speed", "vorticity", "pressure", "scalar"]
 QUANTITIES: tuple[Quantity, ...] = ("speed", "vorticity", "pressure")
-"""Those that every fluid has."""
+"""Quantities that every fluid has."""
 
 
 _MOST, _USUAL = 99.9, 80.0

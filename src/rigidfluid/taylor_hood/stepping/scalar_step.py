@@ -77,7 +77,7 @@ class ScalarEquations:
 
 @dataclass(frozen=True, eq=False)
 class _Passage:
-    """What fluid carries through faces that hold no value: ``outflow`` (nodes, nodes) of what leaves, by the value
+    """Transport by fluid through faces that hold no value: ``outflow`` (nodes, nodes) of what leaves, by the value
     there, ``inflow`` (nodes,) of what comes in with a value that is given."""
 
     outflow: sparse.csr_array
@@ -176,7 +176,7 @@ def _system(moment: _Moment, velocity: FloatArray) -> _System:
 
 
 def _passage(moment: _Moment, number: int, face: Face, flow: FloatArray, constant: float) -> _Passage:
-    """What the ``flow`` (nodes, d) carries through a face that holds no value."""
+    """Transport by the ``flow`` (nodes, d) through a face that holds no value."""
     node_points, nodes = moment.node_points, face.facet_nodes
     value, count = moment.equations.problem.conditions[number].value, len(node_points)
     shapes, through = face.inflow_at_points(node_points, flow)

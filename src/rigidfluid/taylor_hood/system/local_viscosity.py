@@ -1,4 +1,4 @@
-"""What varies of a fluid's viscosity, at the points by which viscous stress is integrated."""
+"""Varying part of a fluid's viscosity, at the points by which viscous stress is integrated."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class LocalViscosity:
 
     @classmethod
     def recalled(cls, memory: Mapping[str, FloatArray]) -> LocalViscosity:
-        """What gave this `memory`."""
+        """Local viscosity that gave this `memory`."""
         return cls(*(memory[f"{_PREFIX}{name}"] for name in _NAMES)) if cls.is_in(memory) else UNIFORM
 
     @staticmethod

@@ -1,4 +1,4 @@
-"""What discretisations and assemblies of backends that solve for Newtonian fluids alone need not have."""
+"""Methods that discretisations and assemblies of backends for Newtonian fluids alone need not have."""
 
 from __future__ import annotations
 
