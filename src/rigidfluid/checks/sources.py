@@ -30,12 +30,13 @@ def source_findings(model: Model) -> Iterator[Finding]:
     for source in model.source_tables:
         due, found = source.due(model.time.end), {"due": source.due(model.time.end)}
         if due == 0:
-            text = f"no body enters until the end, at {model.time.end:g}"
+            text = f"no body of {source.name} enters until the end, at {model.time.end:g}"
             remedy = "Let the first one enter earlier, or move time.end."
             yield Finding("warning", QUESTION, (source.name,), text, remedy, found)
             continue
         judged = "it is" if due == 1 else "they are" if due <= FIRST else f"the first {FIRST} are"
         text = (
-            f"{due} {'body is' if due == 1 else 'bodies are'} due until the end; {judged} judged as those of the start"
+            f"{due} {'body' if due == 1 else 'bodies'} of {source.name} {'is' if due == 1 else 'are'} due until the end"
         )
+        text += f"; {judged} judged as those of the start"
         yield Finding("note", QUESTION, (source.name,), text, found=found)

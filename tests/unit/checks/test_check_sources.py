@@ -41,9 +41,11 @@ def test_bodies_of_a_source_are_judged_as_listed_ones(make: Any) -> None:
 def test_who_enters_is_told() -> None:
     (many,) = [one for one in findings(dry_tables, POST, source=[SOURCE | {"every": 0.05}]) if one.question == "source"]
     assert (many.grade, many.found) == ("note", {"due": 21})
-    assert "21 bodies are due until the end; the first 8 are judged" in many.text
+    assert "21 bodies of grain are due until the end; the first 8 are judged" in many.text
     late = findings(dry_tables, POST, source=[SOURCE | {"times": [3.0]}])
-    assert [(one.grade, one.subject) for one in late if one.question == "source"] == [("warning", ("grain",))]
+    (none,) = [one for one in late if one.question == "source"]
+    assert (none.grade, none.subject) == ("warning", ("grain",))
+    assert "no body of grain enters" in none.text
 
 
 def test_bodies_may_be_driven_to_where_they_leave() -> None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.wall import Wall
+from rigidfluid.core.model.generalised_newtonian import GeneralisedNewtonian
 from rigidfluid.core.model.system import System
 
 _OPPOSITE = -1.0 + 1e-9
@@ -16,11 +17,12 @@ _OPPOSITE = -1.0 + 1e-9
 
 
 class Shear(NamedTuple):
-    """Shear between two walls: its ``rate`` γ [1/time], the ``stress`` μγ of the fluid alone [force/length^(d-1)], the
-    direction ``along`` (d,) in which one slides and the normal ``across`` (d,) towards it [1]."""
+    """Shear between two walls: its ``rate`` γ [1/time], the ``stress`` μγ of the fluid alone, None where its viscosity
+    varies [force/length^(d-1)], the direction ``along`` (d,) in which one slides and the normal ``across`` (d,) towards
+    it [1]."""
 
     rate: float
-    stress: float
+    stress: float | None
     along: FloatArray
     across: FloatArray
 
@@ -35,13 +37,14 @@ def shear_of_walls(system: System) -> Shear | None:
     opposite = [
         (one, two, normal) for (one, normal), (two, other) in combinations(flat, 2) if normal @ other < _OPPOSITE
     ]
-    viscosity = system.fluid.material.dynamic_viscosity
+    material = system.fluid.material
+    viscosity = None if isinstance(material, GeneralisedNewtonian) else material.dynamic_viscosity
     found = [_shear(one, two, normal, middle, viscosity) for one, two, normal in opposite]
     moving = [shear for shear in found if shear.rate > 0.0]
     return moving[0] if len(moving) == 1 else None
 
 
-def _shear(one: Wall, two: Wall, normal: FloatArray, middle: FloatArray, viscosity: float) -> Shear:
+def _shear(one: Wall, two: Wall, normal: FloatArray, middle: FloatArray, viscosity: float | None) -> Shear:
     """Shear of a fluid of this ``viscosity`` between two walls, the first with this unit ``normal`` (d,) into it, at
     points next to one (d,)."""
     places = [wall.shape.closest_point(middle[None]) for wall in (one, two)]
@@ -49,7 +52,7 @@ def _shear(one: Wall, two: Wall, normal: FloatArray, middle: FloatArray, viscosi
     change, distance = slides[1] - slides[0], float((places[1] - places[0])[0] @ normal)
     size = float(np.linalg.norm(change))
     rate = size / distance
-    return Shear(rate, viscosity * rate, change / max(size, np.finfo(float).tiny), normal)
+    return Shear(rate, viscosity and viscosity * rate, change / max(size, np.finfo(float).tiny), normal)
 
 
 def _sliding(wall: Wall, place: FloatArray) -> FloatArray:

@@ -7,11 +7,11 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from rigidfluid.core.geometry.answers import instance, optional, rows
+from rigidfluid.core.geometry.answers import rows
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.guarded import gives
 from rigidfluid.core.model import part_answers as parts
-from rigidfluid.core.model.pair_formula import PairFormula
+from rigidfluid.core.model.pair_formula import PairFormula, refuse_no_formula
 from rigidfluid.core.model.part import Part, PartOptions
 from rigidfluid.core.model.types import Contacts, Loads, Motion
 from rigidfluid.errors import SceneError
@@ -137,7 +137,7 @@ class ForceLaw(Part):
         the normal and along it do not depend on each other."""
         return np.zeros_like(turning)
 
-    @gives(optional(instance(lambda: PairFormula)))
+    @gives(refuse_no_formula)
     def pair_formula(self) -> PairFormula | None:
         """Formula of one contact of balls for compiled loops, the same as ``force`` and ``damping``; None without: then
         these are asked. Only the class that has it gives it, and not its subclasses."""

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import cache
+from types import FunctionType
 from typing import TYPE_CHECKING, Any, NamedTuple
-from warnings import catch_warnings, simplefilter
+from warnings import filterwarnings
 
+import numpy as np
+
+from rigidfluid.core.geometry.answers import refuse_others
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.value_types import describe
+from rigidfluid.core.geometry.wrong import Wrong
+from rigidfluid.error_text import error_text
+from rigidfluid.errors import PluginError
 
 if TYPE_CHECKING:
     from rigidfluid.core.model.force_law import ForceLaw
@@ -28,7 +35,8 @@ class PairFormula(NamedTuple):
         ``function(parameters, gap, radius_a, radius_b, mass, opening, sliding)`` gives (U, f, g, c) for a gap up to the
         law's range [length], two radii, that of a wall infinite [length], the effective mass [mass], and the rate of
         the gap and \\|v_t\\| [length/time]. It is a plain function at the top of a module, of numbers and of NumPy's
-        functions, so that Numba compiles it once and keeps it on disk.
+        functions, so that Numba compiles it once and keeps it on disk. It raises nothing: a division by zero is
+        infinite or not a number, as in arrays.
     parameters : (p,) array
         The law's own numbers, handed to the function as they are.
     """
@@ -37,25 +45,42 @@ class PairFormula(NamedTuple):
     parameters: FloatArray
 
 
+def refuse_no_formula(answer: Any, *_: Any, **__: Any) -> None:
+    """Refuse what is neither None nor a formula with a function and a row of numbers."""
+    if answer is None:
+        return
+    refuse_others(answer, PairFormula)
+    refuse_others(answer.function, FunctionType, "function")
+    numbers = np.asarray(answer.parameters)
+    if numbers.ndim != 1 or numbers.dtype.kind not in "fiu":
+        raise Wrong(f"parameters {describe(numbers)}", "a row of real numbers")
+
+
 def own_formula(law: ForceLaw) -> PairFormula | None:
     """Formula of a law whose class gives one itself; an inherited one may leave out what the class has changed."""
-    return law.pair_formula() if "pair_formula" in vars(type(law)) else None
-
-
-@contextmanager
-def formulas_compiled() -> Iterator[None]:
-    """Let loops be compiled without Numba's warning that functions as arguments are experimental."""
-    with catch_warnings():
-        simplefilter("ignore")
-        yield
+    formula = law.pair_formula() if "pair_formula" in vars(type(law)) else None
+    return formula and formula._replace(parameters=np.ascontiguousarray(formula.parameters, dtype=np.float64))
 
 
 @cache
 def compiled(function: Formula) -> Any:
-    """The function, compiled for calls from compiled loops; as it is where Numba compiles nothing."""
+    """The function, compiled for calls from compiled loops, or as it is where Numba compiles nothing; raises PluginError
+    if it cannot be."""
     from numba import cfunc, config
+    from numba.core.errors import NumbaError
 
     if getattr(config, "DISABLE_JIT", False):
         return function
+    filterwarnings("ignore", "First-class function type feature is experimental")
     numbers = ", ".join(["float64"] * 6)
-    return cfunc(f"UniTuple(float64, 4)(float64[::1], {numbers})", cache=True)(function)
+    signature = f"UniTuple(float64, 4)(float64[::1], {numbers})"
+    try:
+        return cfunc(signature, cache=True, error_model="numpy")(function)
+    except (NumbaError, RuntimeError) as error:
+        told = " ".join(error_text(error).splitlines()[:2])
+        raise PluginError(
+            f"formula {function.__module__}.{function.__qualname__}",
+            f"what Numba cannot compile or keep: {told}",
+            "a plain function in a module's file, of numbers and of NumPy's functions",
+            "Mend it, or let pair_formula give None: then force and damping are asked.",
+        ) from error

@@ -34,6 +34,7 @@ def continued(fields: Fields, lattice: Lattice) -> Fields:
         cells=cells.reshape(-1, fields.cells.shape[1]),
         velocity=fields.velocity[node],
         pressure=fields.pressure[node] + move @ _jumps(fields, lattice),
+        scalar=None if fields.scalar is None else fields.scalar[node],
     )
 
 

@@ -87,8 +87,9 @@ class Statistics(NamedTuple):
             total, viscosity = self.suspension.by_cause["total"], self.suspension.relative_viscosity
             unit = self.units.pressure
             lines.append(f"pressure of the bodies: {told(total.pressure)} [{unit}]")
-            if viscosity is not None and total.differences is not None:
+            if viscosity is not None:
                 lines.append(f"viscosity over that of the fluid: {told(viscosity)}")
+            if total.differences is not None:
                 lines.append(f"normal stress differences: {told(total.differences)} [{unit}]")
         return [self.units.put_into(line) for line in lines]
 

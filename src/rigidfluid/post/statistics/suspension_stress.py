@@ -17,8 +17,8 @@ from rigidfluid.post.statistics.samples import Samples
 
 class StressFigures(NamedTuple):
     """Figures of one cause of stress: ``stress`` Σ (d, d) and ``pressure`` -tr Σ/d [force/length^(d-1)]; between walls
-    that shear ``differences`` (d - 1,), N₁ and in 3D N₂ [force/length^(d-1)], and ``viscosity``, its part of that of
-    the suspension over the fluid's [1]."""
+    that shear ``differences`` (d - 1,), N₁ and in 3D N₂ [force/length^(d-1)], and in a Newtonian fluid ``viscosity``,
+    its part of that of the suspension over the fluid's [1]."""
 
     stress: Mean
     pressure: Mean
@@ -33,7 +33,8 @@ class StressFigures(NamedTuple):
 
 class SuspensionStress(NamedTuple):
     """Stress of the bodies ``by_cause``, ``fluid``, ``contacts``, ``lubrication`` where a law gives it, and ``total``;
-    and between walls that shear, the ``shear_rate`` [1/time] and the ``relative_viscosity`` [1], None without these."""
+    and between walls that shear, the ``shear_rate`` [1/time] and in a Newtonian fluid the ``relative_viscosity`` [1],
+    None without these."""
 
     by_cause: Mapping[str, StressFigures]
     shear_rate: float | None
@@ -93,8 +94,8 @@ def _figures(stress: FloatArray, shear: Shear | None) -> StressFigures:
 
     along, across = part(shear.along, shear.along), part(shear.across, shear.across)
     differences = np.stack([along - across, 2.0 * across + along - trace], axis=1)[:, : stress.shape[1] - 1]
-    viscosity = part(shear.along, shear.across) / shear.stress
-    return StressFigures(mean(stress), pressure, mean(differences), mean(viscosity))
+    viscosity = None if shear.stress is None else mean(part(shear.along, shear.across) / shear.stress)
+    return StressFigures(mean(stress), pressure, mean(differences), viscosity)
 
 
 def _sums(samples: Samples, table: Mapping[str, NDArray[Any]]) -> FloatArray:

@@ -9,7 +9,7 @@ from rigidfluid.core.contact.pairs.near_pairs import NearPairs
 from rigidfluid.core.contact.path import substep_path
 from rigidfluid.core.contact.path.ball_substeps import ball_substeps
 from rigidfluid.core.coupling.schemes import scheme_of
-from rigidfluid.core.model.pair_formula import own_formula
+from rigidfluid.core.model.pair_formula import PairFormula, own_formula
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.errors import StepRejected
 from rigidfluid.forces.normal import NormalLaw
@@ -21,6 +21,10 @@ LAWS = {
     "dashpot": {"law": "spring-dashpot", "stiffness": 8e3, "restitution": 0.8, "friction": 0.3},
     "damped": {"law": "spring-dashpot", "stiffness": 8e3, "damping": 1.0, "friction": 0.1, "tangential_damping": 0.5},
 }
+
+
+def no_number(parameters, gap, radius_a, radius_b, mass, opening, sliding):
+    return 0.0, np.nan, 0.0, 0.0
 
 
 def gas(law, dimension, side, substeps, step=0.05, **contact):
@@ -100,6 +104,13 @@ def test_overlaps_are_refused(monkeypatch):
         run = Simulation(scene, None, False)
         with pytest.raises(StepRejected, match="a gap of -"):
             scheme_of(run.system).follow(run.state, run.time, 0.5, None)
+
+
+def test_a_force_that_is_no_number_is_refused_as_that_of_the_law(monkeypatch):
+    monkeypatch.setattr(NormalLaw, "pair_formula", lambda law: PairFormula(no_number, np.zeros(1)))
+    run = Simulation(gas("normal", 2, 2, 40), None, False)
+    with pytest.raises(StepRejected, match=r"forces by a law's formula of nan.*`contact\.law`"):
+        scheme_of(run.system).follow(run.state, run.time, 0.5, None)
 
 
 @pytest.mark.parametrize(

@@ -49,3 +49,12 @@ def test_a_ball_that_is_nowhere_has_no_neighbours(odd):
         start, second = near_each_ball(position, np.ones(3), np.empty((0, 2, 2)), 0.1)
     assert second.tolist() == [1]
     assert start.tolist() == [0, 1, 1, 1]
+
+
+def test_hundreds_of_thousands_of_tiny_balls_are_in_cells_too():
+    """Along each axis there might be millions of cells."""
+    position = np.random.default_rng(1).random((300_000, 3))
+    position[1] = position[0]
+    start, second = near_each_ball(position, np.full(300_000, 1e-8), np.empty((0, 2, 3)), 1e-8)
+    assert start[1] == 1
+    assert second.tolist() == [1]

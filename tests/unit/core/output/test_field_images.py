@@ -33,7 +33,7 @@ def torn(vectors: FloatArray) -> Fields:
     for vector in vectors:
         points = points + random.integers(-1, 3, len(points))[:, None, None] * vector
     kept, cells = np.unique(np.round(points.reshape(-1, 2), 9), axis=0, return_inverse=True)
-    return Fields(kept, cells.reshape(-1, 6), *exact(kept))
+    return Fields(kept, cells.reshape(-1, 6), *exact(kept), scalar=exact(kept)[0][:, 0])
 
 
 @pytest.mark.parametrize("count", [1, 2])
@@ -51,6 +51,7 @@ def test_the_domain_is_covered_once_with_what_is_there(count: int) -> None:
     velocity, pressure = exact(found.points)
     np.testing.assert_allclose(found.velocity, velocity, atol=1e-7)
     np.testing.assert_allclose(found.pressure, pressure, atol=1e-7)
+    np.testing.assert_allclose(found.scalar, velocity[:, 0], atol=1e-7)
 
 
 def test_cells_across_the_surface_are_at_both_ends() -> None:

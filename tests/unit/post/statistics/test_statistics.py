@@ -347,6 +347,21 @@ def test_stresses_differ_along_the_flow_across_it_and_along_the_vorticity(dimens
     assert found.relative_viscosity.error == pytest.approx(mean(shearing / 6.0).error)
 
 
+def test_a_fluid_whose_viscosity_varies_has_no_relative_viscosity() -> None:
+    """Its own stress changes with the bodies, so that theirs is not all that they add."""
+    material = {"type": "power_law", "viscosity": 3.0, "shear_rate": 1.0, "exponent": 0.5, "least_shear_rate": 0.1}
+    system = sheared(2, fluid={"model": "stokes", "density": 1.0, "material": material})
+    samples = made(np.random.default_rng(5).random((4, 2, 2)))
+    names = {"step": np.repeat(samples.step, 2), "body": np.array(["ball0", "ball1"] * 4)}
+    found = suspension_stress(samples, system, names | {name: np.ones(8) for name in ("sxx", "sxy", "syy")}, {})
+    assert found is not None
+    assert found.shear_rate == pytest.approx(2.0)
+    assert found.relative_viscosity is None
+    assert found.by_cause["total"].viscosity is None
+    assert found.by_cause["total"].differences is not None
+    json.dumps(found.to_dict(), allow_nan=False)
+
+
 @pytest.mark.parametrize("sliding", [False, True])
 def test_what_a_film_resists_is_apart_from_what_its_contact_repels(tmp_path: Path, sliding: bool) -> None:
     """Of the stress of the law that repels and the film's, the first alone follows from the gaps."""

@@ -86,7 +86,7 @@ def _cells(position, width):
         ratio = (high[k] - low[k]) / width
         if ratio > 1.0:  # not for one that is no number
             shape[k] = int(min(ratio, most))
-    while shape[0] * shape[1] * shape[2] > most:
+    while float(shape[0]) * shape[1] * shape[2] > most:  # as numbers that do not overflow
         shape[np.argmax(shape)] //= 2
     cell = np.zeros((count, 3), np.int64)
     for k in range(dimension):

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rigidfluid.core.contact.pairs.proximity import refuse_overlap
 from rigidfluid.core.contact.path.contact_load import ContactLoad
 from rigidfluid.core.contact.path.detection import PoseDetection
@@ -14,7 +12,8 @@ from rigidfluid.core.mechanics.dynamics import DryDynamics
 from rigidfluid.core.model.detection import Sight
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.force_law import ForceLaw
-from rigidfluid.core.model.pair_formula import PairFormula, compiled, formulas_compiled, own_formula
+from rigidfluid.core.model.pair_formula import PairFormula, compiled, own_formula
+from rigidfluid.core.model.part_results import refuse_no_number
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Wrench
 
@@ -27,7 +26,7 @@ class BallSubsteps:
 
     def __init__(self, system: System, formula: PairFormula, near: NearPairs, dynamics: DryDynamics) -> None:
         self._formula = compiled(formula.function)
-        self._law = np.ascontiguousarray(formula.parameters, dtype=np.float64), system.law_range
+        self._law = formula.parameters, system.law_range
         self._system, self._near, self._dynamics = system, near, dynamics
 
     def advance(self, span: Span, sight: Sight, load: ContactLoad, impulse: Wrench) -> SubstepResult:
@@ -39,11 +38,11 @@ class BallSubsteps:
         around = listed.start, listed.second, listed.position.copy(), listed.reach, near.wider(law_range), near.planes
         wrench, pushed = Wrench(load.wrench.force.copy(), load.wrench.torque.copy()), (impulse.force, impulse.torque)
         now = wrench.force, wrench.torque, load.loss
-        with formulas_compiled():
-            count, left, planned, dissipated, loss, gap, nearest, anew, made = advance_balls(
-                self._formula, self._law, tuple(balls), near.radii, around, now, pushed, tuple(span)
-            )
+        count, left, planned, dissipated, loss, gap, nearest, anew, made = advance_balls(
+            self._formula, self._law, tuple(balls), near.radii, around, now, pushed, tuple(span)
+        )
         refuse_overlap(self._system, nearest, gap)
+        refuse_no_number("contacts", "velocity after forces by a law's formula", balls.velocity, "contact.law")
         if anew:
             near.keep(PairList(*made))
         self._dynamics.place(balls, span.left - left)

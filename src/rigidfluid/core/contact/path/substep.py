@@ -15,7 +15,7 @@ from rigidfluid.core.geometry.wall import WallVelocities
 from rigidfluid.core.model.contacts import middle, normal_part, select, sides, turning_radius
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.force_law import ForceLaw
-from rigidfluid.core.model.pair_formula import PairFormula, compiled, formulas_compiled, own_formula
+from rigidfluid.core.model.pair_formula import PairFormula, compiled, own_formula
 from rigidfluid.core.model.part_results import refuse_no_number
 from rigidfluid.core.model.types import Contacts, Motion, Pose, Twist
 
@@ -291,8 +291,7 @@ def _deepest_by_formula(
     from rigidfluid.core.contact.path.deepest_gaps import deepest_gaps
 
     radii = contacts.radius_a, contacts.radius_b
-    with formulas_compiled():
-        found = deepest_gaps(compiled(formula.function), formula.parameters, start, *radii, energy, force, _HALVINGS)
+    found = deepest_gaps(compiled(formula.function), formula.parameters, start, *radii, energy, force, _HALVINGS)
     return np.asarray(found)
 
 
