@@ -64,8 +64,10 @@ def own_formula(law: ForceLaw) -> PairFormula | None:
 
 @cache
 def compiled(function: Formula) -> Any:
-    """The function, compiled for calls from compiled loops, or as it is where Numba compiles nothing; raises PluginError
-    if it cannot be."""
+    """The function, compiled for calls from compiled loops; itself where Numba compiles nothing.
+
+    Raises PluginError if it cannot be compiled.
+    """
     from numba import cfunc, config
     from numba.core.errors import NumbaError
 
