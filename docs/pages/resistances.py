@@ -15,7 +15,7 @@ from page_tools.kept_rows import Row
 from page_tools.settings import Settings
 
 ALLOWED = 0.01
-GAPS, FAR = (0.5, 0.1, 1e-4), 60.0
+GAPS, FAR = (0.5, 0.1, 0.02, 2e-3, 1e-3, 1e-4), 60.0
 TURNED_AT, BOXES = 0.1, (30.0, 60.0, 120.0)
 EQUAL = "Equal spheres"
 ARRANGEMENTS = {
