@@ -158,8 +158,7 @@ def _told(model: type[BaseModel], complaint: ErrorDetails, complaints: Sequence[
         return _missing_key(place, complaint["input"], str(complaint["loc"][-1]))
     if complaint["type"] == "missing":
         return _short_list(_place(model, complaint["loc"][:-1], at), complaint, complaints)
-    or_table = place.within is not None and complaint["loc"][-1] not in (place.key, place.type)
-    if complaint["type"] in ("tuple_type", "list_type") and not or_table:
+    if complaint["type"] in ("tuple_type", "list_type") and not _may_be_table(place, complaint["loc"]):
         return _single_value(place, complaint["input"])
     return SceneError(place.field or "scene", value_text(complaint["input"]), allowed_by(complaint), _remedy(place))
 
@@ -242,6 +241,12 @@ def _short_list(place: _Place, first: ErrorDetails, complaints: Sequence[ErrorDe
     empty = sum(each["type"] == "missing" and each["loc"][:-1] == first["loc"][:-1] for each in complaints)
     allowed = f"{len(first['input']) + empty} entries"
     return SceneError(place.field, value_text(first["input"]), allowed, _remedy(place))
+
+
+def _may_be_table(place: _Place, location: Location) -> bool:
+    """Tell whether a single table might stand in the place of a list: pydantic then ends the ``location`` by the kind
+    that it has tried."""
+    return place.within is not None and location[-1] not in (place.key, place.type)
 
 
 def _single_value(place: _Place, value: object) -> SceneError:
