@@ -4,26 +4,16 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from pydantic import Field
-
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.model.generalised_newtonian import GeneralisedNewtonian
 from rigidfluid.core.model.part import PartOptions
-from rigidfluid.core.scene.table import Positive
-from rigidfluid.materials.yielding import yielding_viscosity
+from rigidfluid.materials.yielding import Yielding, YieldingOptions
 
 
-class BinghamOptions(PartOptions):
+class BinghamOptions(YieldingOptions):
     """Keys of a ``[fluid.material]`` table with type ``bingham``."""
 
-    viscosity: Positive = Field(description="Plastic viscosity μ_p [mass·length^(2-d)/time]")
-    yield_stress: Positive = Field(description="Yield stress τ_y [force/length^(d-1)]")
-    stress_growth: Positive = Field(
-        description="Papanastasiou's time m: below the yield stress it flows with a viscosity of m τ_y [time]"
-    )
 
-
-class Bingham(GeneralisedNewtonian):
+class Bingham(Yielding):
     """μ = μ_p + τ_y (1 - exp(-m γ̇)) / γ̇.
 
     References
@@ -33,18 +23,7 @@ class Bingham(GeneralisedNewtonian):
 
     name: ClassVar[str] = "bingham"
     Options: ClassVar[type[PartOptions]] = BinghamOptions
-    options: BinghamOptions
-
-    def __init__(self, options: BinghamOptions, dimension: int) -> None:
-        super().__init__(options, dimension)
-        self.dynamic_viscosity = options.viscosity
-
-    @property
-    def yield_stress(self) -> float:
-        """τ_y [force/length^(d-1)]."""
-        return self.options.yield_stress
 
     def viscosity(self, shear_rate: FloatArray) -> FloatArray:
         """μ, (N,) [mass·length^(2-d)/time]."""
-        o = self.options
-        return o.viscosity + yielding_viscosity(shear_rate, o.yield_stress, o.stress_growth)
+        return self.options.viscosity + self.yielding_viscosity(shear_rate)

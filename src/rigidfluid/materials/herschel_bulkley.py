@@ -8,13 +8,12 @@ import numpy as np
 from pydantic import Field
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.model.generalised_newtonian import GeneralisedNewtonian
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.scene.table import Positive
-from rigidfluid.materials.yielding import yielding_viscosity
+from rigidfluid.materials.yielding import Yielding, YieldingOptions
 
 
-class HerschelBulkleyOptions(PartOptions):
+class HerschelBulkleyOptions(YieldingOptions):
     """Keys of a ``[fluid.material]`` table with type ``herschel_bulkley``; the consistency is K = μ₁ γ̇₁^(1 - n)."""
 
     viscosity: Positive = Field(
@@ -23,13 +22,9 @@ class HerschelBulkleyOptions(PartOptions):
     )
     shear_rate: Positive = Field(description="Shear rate γ̇₁ with that viscosity [1/time]")
     exponent: float = Field(gt=0, le=2, description="Exponent n of the stress; below 1 it is shear-thinning [1]")
-    yield_stress: Positive = Field(description="Yield stress τ_y [force/length^(d-1)]")
-    stress_growth: Positive = Field(
-        description="Papanastasiou's time m: below the yield stress it flows with a viscosity of about m τ_y [time]"
-    )
 
 
-class HerschelBulkley(GeneralisedNewtonian):
+class HerschelBulkley(Yielding):
     """μ = μ₁ ((γ̇² + m⁻²) / γ̇₁²)^((n - 1)/2) + τ_y (1 - exp(-m γ̇)) / γ̇; with n = 1 a Bingham fluid.
 
     References
@@ -43,18 +38,9 @@ class HerschelBulkley(GeneralisedNewtonian):
     Options: ClassVar[type[PartOptions]] = HerschelBulkleyOptions
     options: HerschelBulkleyOptions
 
-    def __init__(self, options: HerschelBulkleyOptions, dimension: int) -> None:
-        super().__init__(options, dimension)
-        self.dynamic_viscosity = options.viscosity
-
-    @property
-    def yield_stress(self) -> float:
-        """τ_y [force/length^(d-1)]."""
-        return self.options.yield_stress
-
     def viscosity(self, shear_rate: FloatArray) -> FloatArray:
         """μ, (N,) [mass·length^(2-d)/time]."""
         o = self.options
         relative = np.hypot(shear_rate, 1.0 / o.stress_growth) / o.shear_rate
         flowing = o.viscosity * relative ** (o.exponent - 1.0)
-        return np.asarray(flowing + yielding_viscosity(shear_rate, o.yield_stress, o.stress_growth))
+        return np.asarray(flowing + self.yielding_viscosity(shear_rate))
