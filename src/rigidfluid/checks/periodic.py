@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rigidfluid.checks.finding import Finding, figure
-from rigidfluid.core.mesh.adaptation.crossing import unseen_contacts
+from rigidfluid.core.mesh.adaptation.crossing import bodies_cross, unseen_contacts
 from rigidfluid.core.model.system import System
 
 QUESTION = "periodic"
@@ -14,7 +14,7 @@ QUESTION = "periodic"
 def periodic_findings(system: System) -> Iterator[Finding]:
     """Report periodic surfaces of a fluid that bodies do not cross; an error for a contact across them that no detector
     sees."""
-    if not system.has_fluid or not system.domain.periodic or len(system.lattice.vectors):
+    if not system.has_fluid or bodies_cross(system):
         return
     text = "bodies do not cross periodic surfaces here, and do not meet images of each other"
     text += ": the run ends where one leaves the domain, or comes within the range of the laws to an image"

@@ -28,7 +28,8 @@ def with_first_bodies(model: Model) -> Model:
 def source_findings(model: Model) -> Iterator[Finding]:
     """Report how many bodies of each source are due until the end; a warning where there are none."""
     for source in model.source_tables:
-        due, found = source.due(model.time.end), {"due": source.due(model.time.end)}
+        due = source.due(model.time.end)
+        found = {"due": due}
         if due == 0:
             text = f"no body of {source.name} enters until the end, at {model.time.end:g}"
             remedy = "Let the first one enter earlier, or move time.end."

@@ -108,9 +108,8 @@ class TaylorHoodBackend(FluidBackend):
         motions = Twist(*np.split(step.prescribed_twist, [self.problem.dimension], axis=1))
         if not step.prescribed.all():
             fluid, _ = initial(self._projecting_discretisation(mesh), *given, twist)
-            motions = self._advanced(
-                self._with_scalar(fluid, mesh), mesh, step, max(self.options.tolerance, _IMPULSE)
-            ).twist
+            fluid = self._with_scalar(fluid, mesh)
+            motions = self._advanced(fluid, mesh, step, max(self.options.tolerance, _IMPULSE)).twist
         bodies = step.kinematics.component_twist(motions)
         fluid, kinetic = struck(self._projecting_discretisation(mesh), *given, bodies)
         self.drop_factors()

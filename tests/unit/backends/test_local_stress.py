@@ -99,7 +99,6 @@ def test_the_tangent_is_the_derivative_of_the_stress(assembly, mesh, name):
     wanted = np.subtract(*ends) / 2e-5
     found = (matrix @ change.ravel()).reshape(velocity.shape)
     np.testing.assert_allclose(found, wanted, atol=1e-6 * np.abs(wanted).max())
-    plain = linearised(discretisation, mesh.geometry, velocity, tangent=False)
-    assert not plain.local.slope.any()
-    matrix = stress_matrix(assembly, mesh, plain.local, material.dynamic_viscosity)[: velocity.size, : velocity.size]
+    plain = replace(stress.local, slope=np.zeros_like(stress.local.slope))
+    matrix = stress_matrix(assembly, mesh, plain, material.dynamic_viscosity)[: velocity.size, : velocity.size]
     np.testing.assert_allclose((matrix @ velocity.ravel()).reshape(velocity.shape), force(velocity), atol=1e-12)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from rigidfluid.backends.scikit_fem import kernels, local_stress
+from rigidfluid.backends.scikit_fem import kernels
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.linear_solver.projection import Masses
@@ -161,9 +161,11 @@ class CompiledAssembly:
         terms = Terms(c.inertia, uniform, c.advection, c.flow, ratio)
         kernels.assemble(data, cells, self._sparsity, terms, self._tables)
         if c.local.varies:
+            from rigidfluid.backends.scikit_fem.local_stress import add_local_stress  # few fluids have one that varies
+
             viscosity, slope = c.viscosity * c.local.relative, c.viscosity * c.local.slope
             varying = LocalTerms(viscosity, slope, c.local.direction, c.grad_div)
-            local_stress.add_local_stress(data, cells, self._sparsity, varying, self._tables)
+            add_local_stress(data, cells, self._sparsity, varying, self._tables)
         return sparse.csr_array((data, self._indices, self._sparsity.indptr), shape=(self.numbering.unknowns,) * 2)
 
     def masses(self, points: FloatArray) -> Masses:
@@ -196,14 +198,18 @@ class CompiledAssembly:
         return float(kernels.strain_square(self._cells(points), self._tables, velocity))
 
     def strain_rates(self, points: FloatArray, velocity: FloatArray) -> StrainRates:
+        from rigidfluid.backends.scikit_fem.local_stress import fill_strain_rates
+
         cell, d = self._cell_of_point, self.numbering.dimension
         tensor, weight = np.empty((len(cell), d, d)), np.empty(len(cell))
-        local_stress.fill_strain_rates(tensor, weight, self._cells(points), self._tables, velocity)
+        fill_strain_rates(tensor, weight, self._cells(points), self._tables, velocity)
         return StrainRates(tensor, weight, cell)
 
     def stress_load(self, points: FloatArray, stress: FloatArray) -> FloatArray:
+        from rigidfluid.backends.scikit_fem.local_stress import add_stress_load
+
         load = np.zeros((self.numbering.nodes, self.numbering.dimension))
-        local_stress.add_stress_load(load, self._cells(points), self._tables, stress)
+        add_stress_load(load, self._cells(points), self._tables, stress)
         return load
 
     def divergence_square(self, points: FloatArray, velocity: FloatArray, weight: FloatArray) -> float:

@@ -101,14 +101,15 @@ def _surface_numbers(surfaces: Surfaces) -> IntArray:
 def with_rings(numbering: Numbering, vertices: IntArray) -> IntArray:
     """The ``vertices`` (v,) and all up to RINGS edges from them if they are no more than MOST times as many,
     ascending."""
-    chosen = vertices
-    for _ in range(RINGS):
-        near = np.isin(numbering.edges, chosen).any(axis=1)
-        wider = np.unique(numbering.edges[near])
-        if len(wider) > MOST * len(vertices):
+    chosen = np.zeros(numbering.vertices, dtype=bool)
+    chosen[vertices] = True
+    for _ in range(RINGS if len(vertices) else 0):
+        wider = chosen.copy()
+        wider[numbering.edges[chosen[numbering.edges].any(axis=1)]] = True
+        if np.count_nonzero(wider) > MOST * len(vertices):
             break
         chosen = wider
-    return chosen
+    return np.flatnonzero(chosen)
 
 
 def _unknowns_of(parts: Parts, vertices: IntArray) -> IntArray:

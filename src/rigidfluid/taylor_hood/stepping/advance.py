@@ -18,7 +18,7 @@ from rigidfluid.taylor_hood.system.boundary import FaceFlow, pressure_load
 from rigidfluid.taylor_hood.system.coupled import CoupledMatrix, CoupledSystem, Solution, masses_alone
 from rigidfluid.taylor_hood.system.discretisation import Discretisation, dissipation, kinetic_energy, stress_power
 from rigidfluid.taylor_hood.system.grad_div import grad_div_dissipation
-from rigidfluid.taylor_hood.system.linearised import linearised
+from rigidfluid.taylor_hood.system.linearised import local_viscosity
 
 _TURNING_TOLERANCE = 1e-3
 """Relative residual of the solve that corrects the advection near bodies which contacts turn around [1]."""
@@ -169,7 +169,7 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
         mass_matrix=step.mass_matrix,
         prescribed=step.prescribed,
         frame=frame,
-        local=linearised(discretisation, points, expected_velocity).local,
+        local=local_viscosity(discretisation, points, expected_velocity),
     )
     if density == 0.0 or d0 == 0.0:
         return matrix

@@ -27,7 +27,7 @@ _REMEDY = "Lengthen the domain, end the run before, or hold the body."
 def refuse_to_cross(system: System, pose: Pose) -> None:
     """Reject a step in which a body leaves a domain with periodic surfaces beyond which its contacts are not known, or
     comes within the range of the laws to what is there."""
-    if not system.domain.periodic or len(system.lattice.vectors):
+    if bodies_cross(system):
         return
     outside = np.flatnonzero(~system.domain.contains(pose.position))
     if len(outside):
@@ -41,16 +41,21 @@ def refuse_to_cross(system: System, pose: Pose) -> None:
         raise StepRejected(
             f"body {system.surfaces[body]!r}",
             f"a gap of {gap:.3g} to {other!r} across a periodic surface, where contacts are not seen",
-            f"at least the range of the laws, {_range(system):.6g}, beside obstacles, curved or oblique walls, "
+            f"at least the range of the laws, {system.law_range:.6g}, beside obstacles, curved or oblique walls, "
             "long-range forces or longer bodies",
             _REMEDY,
         )
 
 
+def bodies_cross(system: System) -> bool:
+    """Tell whether bodies may cross all periodic surfaces of the domain, as they may where it has none."""
+    return not system.domain.periodic or len(system.lattice.vectors) > 0
+
+
 def unseen_contacts(system: System, pose: Pose) -> Iterator[tuple[int, str, float]]:
     """Bodies that move, each with the name of a body or curved wall of which it meets an image within the range of the
     laws, and the gap [length]; none where no law acts, or detectors see images."""
-    if system.law is None or not system.domain.periodic or len(system.lattice.vectors):
+    if system.law is None or bodies_cross(system):
         return
     signs = np.array([sign for sign in product((-1, 0, 1), repeat=len(system.domain.lattice)) if any(sign)])
     lower, upper = system.domain.extent
@@ -63,7 +68,7 @@ def unseen_contacts(system: System, pose: Pose) -> Iterator[tuple[int, str, floa
 
 def _met(system: System, pose: Pose, body: int, centre: FloatArray) -> Iterator[tuple[int, str, float]]:
     """Contacts of the image of a body with this ``centre`` (d,), as `unseen_contacts` gives them."""
-    reach = _range(system)
+    reach = system.law_range
     own = system.bodies[body].sample_surface(_POINTS) @ rotation_matrices(pose.orientation[body : body + 1])[0].T
     away = np.linalg.norm(pose.position - centre, axis=1) - system.bounding_radii - system.bounding_radii[body]
     for other in np.flatnonzero((away < reach) & (np.arange(len(away)) != body)).tolist():
@@ -80,7 +85,3 @@ def _met(system: System, pose: Pose, body: int, centre: FloatArray) -> Iterator[
 def _gap(surface: Surface, points: FloatArray) -> float:
     """Least distance of points (N, d) to a surface [length]."""
     return float(np.linalg.norm(points - surface.closest_point(points), axis=1).min())
-
-
-def _range(system: System) -> float:
-    return 0.0 if system.law is None else system.law.range
