@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from rigidfluid.core.scene.patterns import PRINTABLE
 from rigidfluid.core.scene.spelling import suggestion
-from rigidfluid.core.scene.table import PRINTABLE
 from rigidfluid.errors import SceneError
 
 Labels = int | str | tuple[int | str, ...]

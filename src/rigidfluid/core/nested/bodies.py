@@ -12,7 +12,7 @@ from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.nested.part_options import build_part
 from rigidfluid.core.nested.placing import check_orientation
 from rigidfluid.core.scene.body_tables import InitialAngle, InitialOrientation
-from rigidfluid.core.scene.table import PRINTABLE
+from rigidfluid.core.scene.patterns import PRINTABLE
 from rigidfluid.core.scene.vectors import Vector
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import BODY, Registry

@@ -7,7 +7,8 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from rigidfluid.core.scene.joint_tables import SpringTable
-from rigidfluid.core.scene.table import PRINTABLE, OpenTable, Positive, Table
+from rigidfluid.core.scene.patterns import PRINTABLE
+from rigidfluid.core.scene.table import OpenTable, Positive, Table
 from rigidfluid.core.scene.vectors import Angular, Vector
 
 Freedom = Literal["x", "y", "z", "rotation", "rx", "ry", "rz"]

@@ -6,7 +6,8 @@ from typing import Annotated
 
 from pydantic import Field
 
-from rigidfluid.core.scene.table import PRINTABLE, OpenTable, Table
+from rigidfluid.core.scene.patterns import PRINTABLE
+from rigidfluid.core.scene.table import OpenTable, Table
 from rigidfluid.core.scene.vectors import NotNegative, NotNegativeAngular, Vector
 
 

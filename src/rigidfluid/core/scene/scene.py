@@ -15,6 +15,7 @@ from rigidfluid.core.scene.exchange_tables import SinkTable, SourceTable
 from rigidfluid.core.scene.fluid_table import FluidTable
 from rigidfluid.core.scene.joint_tables import JointTable
 from rigidfluid.core.scene.mesh_tables import MeshTable
+from rigidfluid.core.scene.patterns import FILE_NAME, LETTERS
 from rigidfluid.core.scene.run_tables import OutputTable, TimeTable
 from rigidfluid.core.scene.scalar_table import ScalarTable
 from rigidfluid.core.scene.swarm_tables import SwarmTable
@@ -22,7 +23,7 @@ from rigidfluid.core.scene.table import Table
 from rigidfluid.core.scene.vectors import DIMENSION
 from rigidfluid.described import Described, first_names
 
-UnitName = Annotated[str, Field(pattern="^[A-Za-zµμ]+$")]
+UnitName = Annotated[str, Field(pattern=LETTERS)]
 
 
 class UnitsTable(Table):
@@ -36,7 +37,7 @@ class UnitsTable(Table):
 class SceneTable(Table):
     """Name, number of dimensions and random seed of the scene, and names of its units."""
 
-    name: str = Field(pattern=r"^[\w.-]*\w$", description="Name of the scene; results go to `out/<name>` by default")
+    name: str = Field(pattern=FILE_NAME, description="Name of the scene; results go to `out/<name>` by default")
     dimension: Literal[2, 3] = Field(description="Number of space dimensions d")
     seed: int = Field(default=0, ge=0, description="Seed of all random numbers")
     units: UnitsTable | None = Field(

@@ -12,7 +12,8 @@ from rigidfluid.core.scene.body_tables import (
     InitialOrientation,
     InitialVelocity,
 )
-from rigidfluid.core.scene.table import PRINTABLE, OpenTable, Positive, Table
+from rigidfluid.core.scene.patterns import PRINTABLE
+from rigidfluid.core.scene.table import OpenTable, Positive, Table
 from rigidfluid.core.scene.vectors import Vector
 
 MOST_BODIES = 10_000

@@ -12,9 +12,6 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from rigidfluid.core.scene.table_type import TableType
 
-PRINTABLE = r"^[^\x00-\x1f\x7f]*$"
-"""Pattern of names: no control characters, which would break the tables and plots that names stand in."""
-
 Positive = Annotated[float, Field(gt=0)]
 
 

@@ -13,6 +13,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from rigidfluid.core.scene.all_errors import all_told, raise_all
+from rigidfluid.core.scene.patterns import IN_WORDS
 from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.core.scene.vectors import WRONG_LENGTH
 from rigidfluid.errors import SceneError
@@ -286,6 +287,9 @@ def allowed_by(complaint: ErrorDetails) -> str:
         bound, key = _LENGTHS[complaint["type"]]
         count = complaint["ctx"][key]
         return f"{bound} {count} {'entry' if count == 1 else 'entries'}"
+    if complaint["type"] == "string_pattern_mismatch":
+        pattern = complaint["ctx"]["pattern"]
+        return IN_WORDS.get(pattern, f"a text that the regular expression {pattern} matches")
     text = complaint["msg"].removeprefix("Value error, ").removeprefix("Input should be ")
     return f"a value {text}" if text.startswith(("greater", "less")) else text
 

@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, ConfigDict, Field, PlainValidator, Validat
 from pydantic.dataclasses import dataclass
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.scene.table import PRINTABLE
+from rigidfluid.core.scene.patterns import PRINTABLE
 from rigidfluid.core.scene.validation import LARGEST, allowed_by, value_text
 from rigidfluid.errors import ArgumentError
 

@@ -24,6 +24,7 @@ from rigidfluid.core.scene.boundary_tables import BoundaryTable
 from rigidfluid.core.scene.domain_table import WindowTable
 from rigidfluid.core.scene.exchange_tables import SinkTable, SourceTable
 from rigidfluid.core.scene.mesh_tables import AUTO
+from rigidfluid.core.scene.patterns import FILE_NAME
 from rigidfluid.core.scene.run_tables import OutputTable, TimeTable
 from rigidfluid.core.scene.scene import Scene, UnitsTable
 from rigidfluid.core.scene.swarm_tables import SwarmTable
@@ -120,7 +121,7 @@ class Model(Arrangement, Described):
     detector: Selected[Detector] | None = None
     stepping: ContactStepping = ContactStepping()
     window: WindowTable | None = None
-    name: Annotated[str, Field(pattern=r"^[\w.-]*\w$")] = "model"
+    name: Annotated[str, Field(pattern=FILE_NAME)] = "model"
     seed: Annotated[int, Field(ge=0)] = 0
     registry: Registry = field(default_factory=Registry.load, repr=False, compare=False)
 

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from rigidfluid.core.scene.patterns import FILE_NAME
 from rigidfluid.post.studies.samples import RandomTable, draw_samples
 from rigidfluid.post.studies.strict_table import Settings, StrictTable, flat
 
@@ -28,7 +29,7 @@ def _listed(value: Any) -> Any:
 class StudyTable(StrictTable):
     """Subject of a study, and the combination of its settings."""
 
-    name: str = Field(pattern=r"^[\w.-]*\w$", description="Name of the study; results go to `out/<name>` by default")
+    name: str = Field(pattern=FILE_NAME, description="Name of the study; results go to `out/<name>` by default")
     scene: str | None = Field(default=None, description="Path of the scene file, relative to the study file")
     kernel: str | None = Field(default=None, description="Name of a kernel, in place of a scene")
     label: str = Field(default="", description="What the error is of, for the plot; the figure if not given")

@@ -257,9 +257,9 @@ BAD = {
     "refined box of too many cells": ({"mesh.refine": [LOW | {"size": 1e-6}]}, "mesh.refine.0.size", "4.47", "Coarsen"),
     "no viscosity": ({"fluid.viscosity": DELETE}, "fluid.viscosity: found nothing", "scikit-fem", "Add 'viscosity'"),
     "no mesh": ({"mesh": DELETE}, "mesh: found nothing", "scikit-fem", "Add [mesh]"),
-    "carriage return in a name": ({"body.0.name": "a\rb"}, "body.0.name: found 'a\\rb'", "match pattern", "Name in"),
-    "escape in a name": ({"body.0.name": "a\x1b[31m"}, "body.0.name: found 'a\\x1b", "match pattern", "Name in"),
-    "unsafe name": ({"scene.name": "../x"}, "scene.name: found '../x'", "match pattern", "Name of the scene"),
+    "carriage return in a name": ({"body.0.name": "a\rb"}, "body.0.name: found 'a\\rb'", "no control", "Name in"),
+    "escape in a name": ({"body.0.name": "a\x1b[31m"}, "body.0.name: found 'a\\x1b", "no control", "Name in"),
+    "unsafe name": ({"scene.name": "../x"}, "scene.name: found '../x'", "letters, digits", "Name of the scene"),
 }
 
 
