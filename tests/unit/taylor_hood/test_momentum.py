@@ -106,3 +106,9 @@ def test_links_of_pairs_leave_all_free_and_links_to_the_ground_do_not(row: list[
     assert Moving(discretisation, step, flow.mesh.points).free is free
     held_fast = replace(step, prescribed=np.array([True, False]))
     assert not Moving(discretisation, held_fast, flow.mesh.points).free
+
+
+def test_the_momentum_is_among_the_shapes_of_a_state() -> None:
+    flow = started(torus()).after(0.1)
+    shapes = flow.backend.state_shapes(flow.mesh, flow.pose)
+    assert shapes == {name: each.shape for name, each in flow.fluid.items()}
