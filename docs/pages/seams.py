@@ -26,7 +26,7 @@ def page(work: Work) -> Page:
     paths = [row for row in rows if "path" in row]
     head = ("cells at the disk", "crossings", "half a period on", "three periods long", "new meshes", "residual", "s")
     text = ABOUT + table(head, map(_told, paths))
-    head = ("cells at the disk", "step", "momentum lost", "residual", "s")
+    head = ("cells at the disk", "step", "change of momentum", "residual", "s")
     text += MOMENTUM + table(head, map(_momentum_row, [row for row in rows if "momentum" in row])) + "\n"
     return Page("Disks that cross periodic surfaces", text, {"": _figure(paths)})
 
@@ -159,7 +159,7 @@ difference, over the period. Numbers of new meshes are in this order. The residu
 MOMENTUM = """
 
 A disk is thrown through a fluid that is periodic in both directions. Nothing acts from outside, so the momentum of
-fluid and disk stays. The discrete convection keeps energy, and not momentum, to rounding: what is lost is over the
-momentum at the start.
+fluid and disk stays. The discrete convection by itself keeps energy alone; each step gives all one velocity more that
+keeps momentum too. The change of momentum is over that at the start.
 
 """

@@ -98,7 +98,7 @@ class TaylorHoodBackend(FluidBackend):
             flow = steady_flow(*given) if start == "steady" else formula_flow(*given)
             made = flow, kinetic_energy(target, mesh.geometry, flow["velocity"])
         self.drop_factors()
-        return self._with_scalar(made[0], mesh), made[1]
+        return self._started(made[0], mesh), made[1]
 
     @final
     def struck(self, mesh: Mesh, pose: Pose, twist: Twist, step: Step) -> tuple[FluidState, float, Twist]:
@@ -108,12 +108,12 @@ class TaylorHoodBackend(FluidBackend):
         motions = Twist(*np.split(step.prescribed_twist, [self.problem.dimension], axis=1))
         if not step.prescribed.all():
             fluid, _ = initial(self._projecting_discretisation(mesh), *given, twist)
-            fluid = self._with_scalar(fluid, mesh)
+            fluid = self._started(fluid, mesh)
             motions = self._advanced(fluid, mesh, step, max(self.options.tolerance, _IMPULSE)).twist
         bodies = step.kinematics.component_twist(motions)
         fluid, kinetic = struck(self._projecting_discretisation(mesh), *given, bodies)
         self.drop_factors()
-        return self._with_scalar(fluid, mesh), kinetic, motions
+        return self._started(fluid, mesh), kinetic, motions
 
     @final
     def advance(self, fluid: FluidState, mesh: Mesh, step: Step) -> Advance:
@@ -154,6 +154,7 @@ class TaylorHoodBackend(FluidBackend):
         self, fluid: FluidState, old: Mesh, new: Mesh, pose: Pose, twist: Twist, filling: Filling
     ) -> tuple[FluidState, float]:
         from rigidfluid.taylor_hood.elements.state import resting_state
+        from rigidfluid.taylor_hood.stepping.momentum import with_momentum
         from rigidfluid.taylor_hood.stepping.transfer import among_other_bodies
         from rigidfluid.taylor_hood.system.discretisation import kinetic_energy
 
@@ -161,7 +162,7 @@ class TaylorHoodBackend(FluidBackend):
         rest = resting_state(target.surfaces, new, pose, twist)
         state = among_other_bodies(fluid, old, filling, target, self.options.tolerance, rest)
         self.drop_factors()
-        return state, kinetic_energy(target, new.geometry, state["velocity"])
+        return with_momentum(state, target, new), kinetic_energy(target, new.geometry, state["velocity"])
 
     @final
     def prediction_error(self, before: FluidState, after: FluidState, mesh: Mesh, extrapolation: FloatArray) -> float:
@@ -210,11 +211,16 @@ class TaylorHoodBackend(FluidBackend):
     def state_shapes(self, mesh: Mesh, pose: Pose) -> dict[str, tuple[int, ...]]:
         from rigidfluid.taylor_hood.elements.state import state_shapes
 
-        shapes, numbering = {}, Numbering.from_mesh(mesh)
+        shapes: dict[str, tuple[int, ...]] = {}
+        numbering = Numbering.from_mesh(mesh)
+        if self.problem.keeps_momentum:
+            from rigidfluid.taylor_hood.stepping.momentum import NAMES as MOMENTA
+
+            shapes = dict.fromkeys(MOMENTA, (self.problem.dimension,))
         if self.problem.scalar is not None:
             from rigidfluid.taylor_hood.stepping.scalar_step import NAMES, REMESHING
 
-            shapes = {**dict.fromkeys(NAMES, (numbering.nodes,)), REMESHING: ()}
+            shapes |= {**dict.fromkeys(NAMES, (numbering.nodes,)), REMESHING: ()}
         return {**state_shapes(numbering, mesh, pose), **shapes}
 
     @final
@@ -281,8 +287,11 @@ class TaylorHoodBackend(FluidBackend):
         surfaces = ScalarSurfaces(self.problem.scalar, self._any_discretisation(mesh).surfaces, mesh)
         return ScalarEquations(self.problem.scalar, self.scalar_assembly(mesh), surfaces, solved_once)
 
-    def _with_scalar(self, fluid: FluidState, mesh: Mesh) -> FluidState:
-        """The fluid's state at the start, with the scalar if there is one."""
+    def _started(self, fluid: FluidState, mesh: Mesh) -> FluidState:
+        """The fluid's state at the start, with its momentum if that is kept, and the scalar if there is one."""
+        from rigidfluid.taylor_hood.stepping.momentum import with_momentum
+
+        fluid = with_momentum(fluid, self._any_discretisation(mesh), mesh)
         if self.problem.scalar is None:
             return fluid
         from rigidfluid.taylor_hood.stepping.scalar_step import start

@@ -47,3 +47,9 @@ class FluidProblem:
     def inert_density(self) -> float:
         """The density in the left side: 0 in Stokes flow."""
         return self.density if self.inertia else 0.0
+
+    @property
+    def keeps_momentum(self) -> bool:
+        """Tell whether fluid with inertia has nothing around it that takes momentum: all of the boundary is seams, and
+        no flux is held through them."""
+        return self.inertia and all(each.is_seam and each.held_flux is None for each in self.conditions)

@@ -2,6 +2,7 @@
 
 ``velocity`` (nodes, d), ``pressure`` (vertices,), ``twist`` (n, d+k), ``position`` (n, d) at the accepted time, the
 same names with ``_previous`` one step earlier, and ``points_previous`` (vertices + K, d), the mesh's geometry then.
+``momentum`` (d,) of the fluid at both times is kept between seams alone; a new mesh does not change it.
 """
 
 from __future__ import annotations

@@ -12,6 +12,7 @@ from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.model.types import Advance, FluidState, Mesh, Step, Twist, Wrench
 from rigidfluid.taylor_hood.elements.container import container_velocity
+from rigidfluid.taylor_hood.stepping.momentum import Moving, momentum, past_load
 from rigidfluid.taylor_hood.stepping.newton import solve_newton
 from rigidfluid.taylor_hood.stepping.stresslets import body_volumes, stresslets
 from rigidfluid.taylor_hood.system.boundary import FaceFlow, pressure_load
@@ -58,7 +59,19 @@ def advance(equations: Equations, tolerance: float, attempt: FluidState | None) 
     solution, on_faces = driven.solution, on_faces + driven.load
     if solution.jump_load is not None:
         on_faces = on_faces + solution.jump_load
+    moving = Moving(discretisation, step, matrix.points)
+    if moving.free:
+        solution = moving.with_gain(solution, _momentum_load(equations, on_faces))
     return _measured(replace(equations, matrix=matrix), solution, on_faces, driven.link_force)
+
+
+def _momentum_load(equations: Equations, on_faces: FloatArray) -> FloatArray:
+    """Load (d,) by which the momentum of fluid at earlier times, forces on it and those ``on_faces`` (nodes, d) give
+    that at the end of the step."""
+    discretisation, load, force = equations.discretisation, on_faces.sum(axis=0), _force(equations)
+    if force is not None:
+        load = load + discretisation.mass_times(equations.matrix.points, force).sum(axis=0)
+    return np.asarray(discretisation.surfaces.ranks.sum(load) + past_load(equations.fluid, equations.step.derivative))
 
 
 def _measured(equations: Equations, solution: Solution, on_faces: FloatArray, link_force: FloatArray) -> Advance:
@@ -104,7 +117,7 @@ def _state(equations: Equations, solution: Solution) -> FluidState:
     """The fluid's state at the end of the step, with what it keeps of the one before."""
     fluid, step, discretisation = equations.fluid, equations.step, equations.discretisation
     twist = _twist(solution, discretisation.problem.dimension)
-    return {
+    state = {
         "velocity": solution.velocity,
         "velocity_previous": fluid["velocity"],
         "pressure": centre_pressure(discretisation, equations.matrix.points, solution.pressure),
@@ -115,6 +128,10 @@ def _state(equations: Equations, solution: Solution) -> FluidState:
         "position": step.pose.position,
         "position_previous": fluid["position"],
     }
+    if discretisation.problem.keeps_momentum:
+        now = momentum(discretisation, equations.matrix.points, solution.velocity)
+        state |= {"momentum": now, "momentum_previous": fluid["momentum"]}
+    return state
 
 
 def _twist(solution: Solution, dimension: int) -> Twist:
@@ -156,7 +173,7 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
     node_points, flow = numbering.node_points(points), density * expected_velocity
     frame = np.zeros(problem.dimension)
     if density > 0.0:
-        frame = container_velocity(discretisation.surfaces, step.time, node_points)
+        frame = _frame(Moving(discretisation, step, points), node_points, fluid, expected_velocity)
     mesh_velocity = numbering.node_points(d0 * expected + d1 * present + d2 * before)
     matrix = CoupledMatrix(
         points=points,
@@ -180,6 +197,20 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
     return replace(matrix, advection=matrix.advection + turned, flow=matrix.flow + turned, masses=masses)
 
 
+def _frame(moving: Moving, node_points: FloatArray, fluid: FluidState, velocity: FloatArray) -> FloatArray:
+    """Velocity (d,) of the frame in which convection makes no energy: of the walls, or of all where nothing holds
+    them."""
+    if not moving.free:
+        return container_velocity(moving.discretisation.surfaces, moving.step.time, node_points)
+    return moving.mean_velocity(velocity, _expected_twist(fluid, moving.step))
+
+
+def _expected_twist(fluid: FluidState, step: Step) -> FloatArray:
+    """Twists (N, d+k) of the motions, extrapolated from those of the bodies."""
+    e0, e1 = step.extrapolation
+    return step.kinematics.motion_twist(e0 * fluid["twist"] + e1 * fluid["twist_previous"])
+
+
 def _system(equations: Equations, on_faces: FloatArray) -> CoupledSystem:
     discretisation, matrix = equations.discretisation, equations.matrix
     fluid, step = equations.fluid, equations.step
@@ -192,7 +223,7 @@ def _system(equations: Equations, on_faces: FloatArray) -> CoupledSystem:
     force = _force(equations)
     if force is not None:
         density_of_load += force
-    expected = step.kinematics.motion_twist(e0 * fluid["twist"] + e1 * fluid["twist_previous"])
+    expected = _expected_twist(fluid, step)
     twist, moved = prescribed_part(step)
     return CoupledSystem(
         matrix,
