@@ -11,6 +11,7 @@ from typing import NamedTuple
 import matplotlib
 import numpy as np
 
+from rigidfluid.core.model.generalised_newtonian import GeneralisedNewtonian
 from rigidfluid.core.output.disk import replace_file, writing
 from rigidfluid.core.output.results_folder import join_folder
 from rigidfluid.core.output.run_files import ADDED, FILES, RUN
@@ -37,6 +38,7 @@ from rigidfluid.post.reports.pictures import (
     gap_picture,
     mesh_picture,
     streamline_picture,
+    viscosity_picture,
     whole_mesh_picture,
 )
 from rigidfluid.post.reports.results import Results, read_results
@@ -112,6 +114,12 @@ def _flow_pictures(results: Results, plane: ViewPlane, body: int | None) -> Iter
     if shown[-1].section.fields.scalar is not None:
         caption = f"The scalar that the fluid carries along.{where}"
         yield "scalar", caption, flow_picture(shown, shared_scale(results, "scalar", plane, body)), raster
+    if shown[-1].section.fields.viscosity is not None:
+        stress = _yield_stress(results)
+        line = "" if stress is None else " Inside of the white line the stress is below the yield stress."
+        caption = f"Viscosity.{line}{where}"
+        scale = shared_scale(results, "viscosity", plane, body)
+        yield "viscosity", caption, viscosity_picture(shown, scale, stress), raster
     yield "whole_mesh", f"The whole mesh at the last output time.{where}", whole_mesh_picture(shown[-1], speed), raster
     if where:
         yield (
@@ -130,6 +138,14 @@ def _flow_pictures(results: Results, plane: ViewPlane, body: int | None) -> Iter
         caption = f"The smallest gap among the output times.{_slice_location(results, plane, nearest)}"
         picture = gap_picture(moment(results, output, plane, nearest), middle, speed)
         yield "smallest_gap", caption, picture, raster
+
+
+def _yield_stress(results: Results) -> float | None:
+    """Yield stress of the fluid, None where it flows under any stress [force/length^(d-1)]."""
+    fluid = results.system.fluid
+    if fluid is None or not isinstance(fluid.material, GeneralisedNewtonian):
+        return None
+    return fluid.material.yield_stress
 
 
 def _slice_location(results: Results, plane: ViewPlane, body: int) -> str:
