@@ -30,7 +30,7 @@ from rigidfluid.post.reports.lines import (
     step_plot,
 )
 from rigidfluid.post.reports.mechanisms import mechanism_plot
-from rigidfluid.post.reports.moment import moment, narrowest, nearest_body, shown_outputs
+from rigidfluid.post.reports.moment import Moment, moment, narrowest, nearest_body, shown_outputs
 from rigidfluid.post.reports.narrowest import gap_middle
 from rigidfluid.post.reports.page import page
 from rigidfluid.post.reports.pictures import (
@@ -43,7 +43,7 @@ from rigidfluid.post.reports.pictures import (
 )
 from rigidfluid.post.reports.results import Results, read_results
 from rigidfluid.post.reports.rotation_plot import rotation_plot, torque_plot, turning
-from rigidfluid.post.reports.scale import QUANTITIES
+from rigidfluid.post.reports.scale import QUANTITIES, Scale
 from rigidfluid.post.reports.shared_scale import shared_scale, shared_scales
 from rigidfluid.post.reports.space import dry_space_picture, flow_space_picture
 from rigidfluid.post.reports.style import STYLE
@@ -128,6 +128,15 @@ def _flow_pictures(results: Results, plane: ViewPlane, body: int | None) -> Iter
             flow_space_picture(results, shown, plane, speed),
             raster,
         )
+    if results.names:
+        yield from _close_ups(results, shown, plane, speed, body)
+
+
+def _close_ups(
+    results: Results, shown: Sequence[Moment], plane: ViewPlane, speed: Scale, body: int | None
+) -> Iterator[Picture]:
+    """Pictures of the mesh about a body, and of the smallest gap."""
+    raster, where = ("png",), _slice_location(results, plane, nearest_body(results) if body is None else body)
     whose = "the body that came nearest to another surface" if body is None else results.names[body]
     about = [moment for moment in shown if moment.has_body]
     if about:
@@ -150,7 +159,8 @@ def _yield_stress(results: Results) -> float | None:
 
 def _slice_location(results: Results, plane: ViewPlane, body: int) -> str:
     """Sentence that locates the slice of a 3D run; empty in 2D."""
-    return f" In the {plane.words} through {results.names[body]}." if results.system.dimension == 3 else ""
+    through = results.names[body] if results.names else "the middle of the domain"
+    return f" In the {plane.words} through {through}." if results.system.dimension == 3 else ""
 
 
 def _pictures(results: Results, plane: ViewPlane, body: int | None) -> Iterator[Picture]:
@@ -161,6 +171,16 @@ def _pictures(results: Results, plane: ViewPlane, body: int | None) -> Iterator[
     elif results.system.dimension == 3:
         times = [results.outputs[output][0] for output in shown_outputs(results)]
         yield "space", "The bodies, and the paths of a few.", dry_space_picture(results, times, plane), ("png",)
+    if results.names:
+        yield from _body_plots(results, plane)
+    yield "energy", "Energy supplied, and where it is.", energy_plot(results), both
+    if results.model.time.tolerance is not None:
+        yield "step", "How long the steps are.", step_plot(results), both
+
+
+def _body_plots(results: Results, plane: ViewPlane) -> Iterator[Picture]:
+    """Plots of bodies over time; each is made when it is asked for."""
+    both = ("png", "svg")
     yield "position", "Where the bodies are.", position_plot(results, plane), both
     if results.system.motions.names:
         yield "mechanisms", "Ways of the mechanisms and of their components.", mechanism_plot(results), both
@@ -179,9 +199,6 @@ def _pictures(results: Results, plane: ViewPlane, body: int | None) -> Iterator[
         yield "contacts", "Contacts: how many, the largest force, the least gap.", contact_plot(results), both
     if results.joints:
         yield "joints", "How far joints have moved, and what acts in them.", joint_plot(results), both
-    yield "energy", "Energy supplied, and where it is.", energy_plot(results), both
-    if results.model.time.tolerance is not None:
-        yield "step", "How long the steps are.", step_plot(results), both
 
 
 def _data(out: Path) -> Iterator[tuple[str, str]]:
