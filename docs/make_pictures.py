@@ -36,6 +36,7 @@ PICTURES = {
     "falling_sphere": Shown("space", (1.0,)),
     "fast_disk": Shown("vorticity", (0.1, 0.15, 0.2, 0.275)),
     "hinged_pair": Shown("vorticity", (0.16, 0.3, 0.44, 0.6)),
+    "hot_cavity": Shown("scalar", (0.03, 0.3)),
     "hundred_disks": Shown("speed", (0.5, 1.5, 3.0)),
     "hundred_spheres": Shown("space", (0.4,)),
     "insertion_2d": Shown("streamlines", (0.1,)),

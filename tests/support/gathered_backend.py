@@ -16,7 +16,6 @@ from rigidfluid.core.mesh.distribution import whole
 from rigidfluid.core.model.extension import FactorisedExtension
 from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.model.ranks import MpiRanks
-from rigidfluid.core.model.types import Fields
 from rigidfluid.hookspecs import hookimpl
 
 CURRENT = threading.local()
@@ -85,7 +84,7 @@ class Gathered(FluidBackend):
         fields = self._on_root(lambda mesh, fluid: ({}, self._inner.fields(fluid, mesh)), mesh, fluid)[1]
         cells = fields.cells if mesh.part is None else fields.cells[mesh.part.cells]
         nodes, own = np.unique(cells, return_inverse=True)
-        return Fields(fields.points[nodes], own.reshape(cells.shape), fields.velocity[nodes], fields.pressure[nodes])
+        return fields.part(nodes, own.reshape(cells.shape))
 
     def probe(self, fluid, mesh, points):
         return self._on_root(lambda mesh, fluid: ({}, self._inner.probe(fluid, mesh, points)), mesh, fluid)[1]

@@ -12,6 +12,7 @@ from rigidfluid.api import FloatArray
 from rigidfluid.backends.scikit_fem.assembly import CompiledAssembly
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.system.coefficients import Coefficients
+from rigidfluid.taylor_hood.system.local_viscosity import LocalViscosity, StrainRates
 from rigidfluid.testing.fluid.curved import ball_in_a_box
 from rigidfluid_ngsolve.assembly import FormAssembly
 
@@ -98,3 +99,54 @@ def test_memory_does_not_grow_with_the_number_of_meshes() -> None:
         FormAssembly(numbering, convection=True).matrix(points, given)
         most.append(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
     assert most[-1] < most[20] + 20_000  # KiB
+
+
+def _local(strain: StrainRates) -> LocalViscosity:
+    """A viscosity that is a function of the cell and of the strain rate, whatever the order of points in a cell."""
+    rate = strain.shear_rate
+    relative, slope = 1.0 + 1.0 / (1.0 + rate), -rate / (1.0 + rate) ** 2
+    return LocalViscosity(relative, slope, strain.tensor / rate[:, None, None], strain.cell_means(relative))
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_viscosity_that_varies_has_the_stress_of_scikit_fem(dimension: int) -> None:
+    """A velocity of second degree, whose strain rates are linear: rules of the same degree agree but for the viscosity,
+    and with one that is the same in each cell to round-off."""
+    numbering, points = scattered(dimension)
+    at = numbering.node_points(points)
+    velocity = np.stack([at[:, 1] ** 2 + at[:, 0], *(at[:, 0] * at[:, axis] for axis in range(1, dimension))], axis=1)
+    none, still = np.zeros(len(numbering.cells)), np.zeros_like(velocity)
+    loads, squares, matrices = [], [], []
+    for made in (CompiledAssembly(numbering), FormAssembly(numbering, convection=True)):
+        strain = made.strain_rates(points, velocity)
+        squares.append(np.bincount(strain.cell, strain.weight * strain.shear_rate**2))
+        loads.append(made.stress_load(points, strain.tensor))
+        cells = np.cos(strain.cell.astype(float))
+        constant = np.broadcast_to(np.eye(dimension)[::-1], strain.tensor.shape).copy()
+        by_cell = LocalViscosity(2.0 + cells, cells, constant, 2.0 + np.cos(np.arange(len(none))))
+        matrices.append(made.matrix(points, Coefficients(1.0, 0.3, still, still, none, by_cell)))
+    np.testing.assert_allclose(squares[1], squares[0], rtol=1e-11)
+    np.testing.assert_allclose(loads[1], loads[0], rtol=0, atol=1e-13 * np.abs(loads[0]).max())
+    assert abs(matrices[1] - matrices[0]).max() < 1e-13 * abs(matrices[0]).max()
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_tangent_is_the_derivative_of_the_stress(dimension: int) -> None:
+    """By differences, in curved cells too."""
+    mesh = ball_in_a_box(dimension, 2)
+    numbering, points = Numbering.from_mesh(mesh), mesh.geometry
+    made, random = FormAssembly(numbering, convection=True), np.random.default_rng(5)
+    velocity, change = random.normal(size=(2, numbering.nodes, dimension))
+    still, none = np.zeros_like(velocity), np.zeros(len(numbering.cells))
+
+    def force(field: FloatArray) -> FloatArray:
+        strain = made.strain_rates(points, field)
+        return made.stress_load(points, (0.3 * _local(strain).relative)[:, None, None] * strain.tensor)
+
+    difference = (force(velocity + 1e-5 * change) - force(velocity - 1e-5 * change)) / 2e-5
+    local = _local(made.strain_rates(points, velocity))
+    tangent = made.matrix(points, Coefficients(0.0, 0.3, still, still, none, local))
+    found = (tangent[: velocity.size, : velocity.size] @ change.ravel()).reshape(velocity.shape)
+    np.testing.assert_allclose(found, difference, rtol=0, atol=1e-7 * np.abs(difference).max())
+    uniform = made.matrix(points, Coefficients(0.0, 0.3, still, still, none))
+    assert abs(uniform - tangent).max() > 0.01 * abs(tangent).max()

@@ -114,4 +114,4 @@ def _later_meshes(system: System, settled: Pose, gap: float, sizes: Sizes, end: 
     way = np.where(fallen > 0.0, fallen, np.minimum(speed * end, float(np.max(system.domain.size))))
     lands = bool(np.any(fallen > 0.0))
     halvings = log2(max(2.0 * sizes.cells_per_gap * sizes.size_body / gap, 1.0)) if lands else 0.0
-    return int(np.ceil(float(np.max(way / diameter)) / _DIAMETERS_OF_A_MESH + halvings))
+    return int(np.ceil(float(np.max(way / diameter, initial=0.0)) / _DIAMETERS_OF_A_MESH + halvings))

@@ -53,7 +53,8 @@ MovieFile = Annotated[
     typer.Option("--out", parser=named_path, metavar="FILE", help="An .mp4 or .gif file; default DIR/movie.mp4."),
 ]
 Shown = Annotated[
-    Literal["speed", "vorticity", "pressure", "scalar"], typer.Option("--show", help="Which quantity of the fluid.")
+    Literal["speed", "vorticity", "pressure", "scalar", "viscosity"],
+    typer.Option("--show", help="Which quantity of the fluid."),
 ]
 Follow = Annotated[str | None, typer.Option("--follow", metavar="BODY", help="A body that the picture goes with.")]
 Looked = Annotated[

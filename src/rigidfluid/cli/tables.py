@@ -89,7 +89,8 @@ def print_end(history: History, folder: Path) -> None:
         tell(f"highest Reynolds number: {solid} with the density of the solid, {fluid} with that of the fluid")
     if summary["smallest_gap"] is not None:
         tell(f"smallest gap: {_figure(summary['smallest_gap'])}")
-    _print_positions(summary["rest_position"])
+    if summary["rest_position"]:
+        _print_positions(summary["rest_position"])
     if summary["failed_remeshes"]:
         tell(
             f"warning: a new mesh could not be made {summary['failed_remeshes']} times; the one before served on. "
@@ -163,7 +164,9 @@ def print_domain(report: Report) -> None:
 
 
 def print_bodies(report: Report) -> None:
-    """Print a table of the bodies; of many, those nearest to another surface."""
+    """Print a table of the bodies, if there are any; of many, those nearest to another surface."""
+    if not report.bodies:
+        return
     nearest = sorted(report.bodies, key=lambda body: float("inf") if body.smallest_gap is None else body.smallest_gap)
     shown = nearest[:MOST_BODIES]
     table = Table("body", "type", "mass", "submerged weight", "impact speed", "smallest gap", "to")

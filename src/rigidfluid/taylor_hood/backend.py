@@ -21,6 +21,7 @@ from rigidfluid.taylor_hood.system.coupled import CoupledMatrix
 from rigidfluid.taylor_hood.system.discretisation import Discretisation
 
 if TYPE_CHECKING:
+    from rigidfluid.taylor_hood.elements.sampling import Samples
     from rigidfluid.taylor_hood.stepping.scalar_step import ScalarAssembly, ScalarEquations
     from rigidfluid.taylor_hood.system.dimensionless import Dimensionless
 
@@ -181,15 +182,16 @@ class TaylorHoodBackend(FluidBackend):
 
     @final
     def probe(self, fluid: FluidState, mesh: Mesh, points: FloatArray) -> tuple[FloatArray, FloatArray]:
-        from rigidfluid.taylor_hood.elements.sampling import Samples
-
-        # All processes ask alike: the root asks, and shares the answer.
-        samples = Samples(mesh, self.numbering_of(mesh), points if mesh.ranks.is_root else points[:0])
+        samples = self._samples(mesh, points)
         velocity, pressure = samples.quadratic(fluid["velocity"]), samples.linear(fluid["pressure"])
         if mesh.periods is not None:
             drops = self._any_discretisation(mesh).surfaces.pressure_drops(fluid["pressure"])
             pressure = pressure + samples.periods @ drops
         return mesh.ranks.bcast((velocity, pressure))
+
+    @final
+    def probe_scalar(self, fluid: FluidState, mesh: Mesh, points: FloatArray) -> FloatArray:
+        return self._samples(mesh, points).quadratic(fluid["scalar"])
 
     @final
     def driving(self, fluid: FluidState, mesh: Mesh) -> FloatArray:
@@ -307,6 +309,12 @@ class TaylorHoodBackend(FluidBackend):
         equations = self._scalar_equations(mesh)
         scalar, account = scalar_step(equations, fluid, mesh, step, advanced.fluid["velocity"])
         return replace(advanced, fluid={**advanced.fluid, **scalar}, scalar=account)
+
+    def _samples(self, mesh: Mesh, points: FloatArray) -> Samples:
+        """Samples at points that all processes ask for alike: those of the root, which shares the answers."""
+        from rigidfluid.taylor_hood.elements.sampling import Samples
+
+        return Samples(mesh, self.numbering_of(mesh), points if mesh.ranks.is_root else points[:0])
 
     def _projecting_discretisation(self, mesh: Mesh) -> Discretisation:
         return self._discretisation(mesh, np.ones(self.problem.motions, dtype=bool))

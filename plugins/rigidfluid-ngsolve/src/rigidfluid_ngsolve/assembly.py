@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,8 @@ from rigidfluid.api import FloatArray, IntArray
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.linear_solver.projection import Masses
 from rigidfluid.taylor_hood.system.coefficients import Coefficients
-from rigidfluid.taylor_hood.system.newtonian import NewtonianOnly
+from rigidfluid.taylor_hood.system.local_viscosity import StrainRates
+from rigidfluid_ngsolve.local_stress import LocalStress, twice_strain
 from rigidfluid_ngsolve.mesh import NodeMesh
 
 _ORDER_OF_FIELD = 2
@@ -25,7 +27,7 @@ _ORDER_OF_CURVES = 4
 """More of it where cells are curved: exact for convection and divergence, as with scikit-fem."""
 
 
-class FormAssembly(NewtonianOnly):
+class FormAssembly:
     """Matrices and loads on the cells of ``numbering``; forms and sparsity are made once.
 
     Parameters
@@ -42,7 +44,7 @@ class FormAssembly(NewtonianOnly):
         self.numbering = numbering
         self._mesh = NodeMesh(numbering)
         velocities = ngs.VectorNodalFESpace(self._mesh.ngsolve, order=2)
-        space = velocities * ngs.H1(self._mesh.ngsolve, order=1)
+        self._space = space = velocities * ngs.H1(self._mesh.ngsolve, order=1)
         self._field, self._flow = ngs.GridFunction(velocities), ngs.GridFunction(velocities)
         self._weight = ngs.GridFunction(ngs.L2(self._mesh.ngsolve, order=0))
         self._inertia, self._viscosity = ngs.Parameter(0.0), ngs.Parameter(0.0)
@@ -51,14 +53,14 @@ class FormAssembly(NewtonianOnly):
         over = _over_cells(self._mesh)
         self._form = ngs.BilinearForm(space)
         self._form += over(self._inertia * u * v)
-        self._form += over(self._viscosity * ngs.InnerProduct(_twice_strain(u), ngs.grad(v)))
+        self._form += over(self._viscosity * ngs.InnerProduct(twice_strain(u), ngs.grad(v)))
         self._form += over(-p * ngs.div(v) - q * ngs.div(u))
         if convection:
             convected = ngs.grad(u) * self._field + 0.5 * ngs.div(self._flow) * u
             self._form += over(convected * v, _ORDER_OF_FIELD)
             self._form += over(self._weight * ngs.div(u) * ngs.div(v))
         self._load = ngs.LinearForm(over(self._field * velocities.TestFunction(), _ORDER_OF_FIELD))
-        square = 0.5 * ngs.InnerProduct(_twice_strain(self._field), _twice_strain(self._field))
+        square = 0.5 * ngs.InnerProduct(twice_strain(self._field), twice_strain(self._field))
         self._strain_square = over(square, _ORDER_OF_STRAIN_SQUARE)
         self._divergence_square = over(self._weight * ngs.div(self._field) ** 2, _ORDER_OF_STRAIN_SQUARE)
         self._order: IntArray | None = None
@@ -68,9 +70,12 @@ class FormAssembly(NewtonianOnly):
         self._weight.vec.FV().NumPy()[:] = coefficients.grad_div
         _nodal(self._flow.vec, self.numbering.dimension)[:] = coefficients.flow
         self._inertia.Set(coefficients.inertia)
-        self._viscosity.Set(coefficients.viscosity)
+        local = coefficients.local
+        self._viscosity.Set(0.0 if local.varies else coefficients.viscosity)
         self._form.Assemble()
         entries, columns, starts = self._form.mat.CSR()
+        if local.varies:
+            entries = np.asarray(entries) + np.asarray(self._local.matrix(coefficients.viscosity, local).CSR()[0])
         if self._order is None:
             self._order, self._indices, self._indptr = _renumbered(self.numbering, columns, starts)
         data = np.asarray(entries)[self._order]
@@ -93,12 +98,24 @@ class FormAssembly(NewtonianOnly):
         self._take(points, velocity)
         return float(Integrate(self._strain_square, self._mesh.ngsolve))
 
+    def strain_rates(self, points: FloatArray, velocity: FloatArray) -> StrainRates:
+        self._take(points, velocity)
+        return self._local.strain_rates()
+
+    def stress_load(self, points: FloatArray, stress: FloatArray) -> FloatArray:
+        self._mesh.move(points)
+        return _nodal(self._local.load(stress), stress.shape[1]).copy()
+
     def divergence_square(self, points: FloatArray, velocity: FloatArray, weight: FloatArray) -> float:
         from ngsolve import Integrate
 
         self._take(points, velocity)
         self._weight.vec.FV().NumPy()[:] = weight
         return float(Integrate(self._divergence_square, self._mesh.ngsolve))
+
+    @cached_property
+    def _local(self) -> LocalStress:
+        return LocalStress(self._mesh, self._space, self._field)
 
     def _take(self, points: FloatArray, field: FloatArray) -> None:
         self._mesh.move(points)
@@ -114,12 +131,6 @@ def _over_cells(mesh: NodeMesh) -> Callable[..., Any]:
         return straight + integrand * ngs.dx(bonus_intorder=more + _ORDER_OF_CURVES, definedonelements=mesh.curved)
 
     return over
-
-
-def _twice_strain(velocity: Any) -> Any:
-    from ngsolve import grad
-
-    return grad(velocity) + grad(velocity).trans
 
 
 def _nodal(vector: Any, dimension: int) -> FloatArray:

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import ClassVar, Self
 
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.given_function import guarded_function
 
 Value = Callable[[float, FloatArray], FloatArray]
 """Velocities (N, d) or pressures (N,) at a time and points (N, d)."""
@@ -60,6 +61,12 @@ class BoundaryCondition(ABC):
     name: str
     normal: FloatArray | None
     field: str = field(default="boundary", kw_only=True)
+
+    def __post_init__(self) -> None:
+        for one in fields(self):
+            if callable(value := getattr(self, one.name)):
+                guarded = guarded_function(value, f"{self.field}.{one.name} on {self.name!r}")
+                object.__setattr__(self, one.name, guarded)
 
     @property
     @abstractmethod

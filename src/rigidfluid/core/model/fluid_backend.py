@@ -11,7 +11,7 @@ from scipy.sparse import csc_array
 
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.fluid.material import Material, Newtonian
-from rigidfluid.core.geometry.answers import anything, instance, number, optional, several
+from rigidfluid.core.geometry.answers import anything, instance, number, optional, rows, several
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.guarded import gives
 from rigidfluid.core.model import backend_answers as backends
@@ -144,6 +144,11 @@ class FluidBackend(Part):
     @gives(backends.probes)
     def probe(self, fluid: FluidState, mesh: Mesh, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Velocity (N, d) and pressure (N,) at ``points`` (N, d); outside the mesh the nearest cell's values."""
+
+    @gives(rows(lambda _, fluid, mesh, points: points.shape[:1], shorter=True))
+    def probe_scalar(self, fluid: FluidState, mesh: Mesh, points: FloatArray) -> FloatArray:
+        """The scalar (N,) at ``points`` (N, d), as `probe` gives the rest; asked of backends with `scalars` alone."""
+        raise NotImplementedError
 
     @gives(backends.driving)
     def driving(self, fluid: FluidState, mesh: Mesh) -> FloatArray:

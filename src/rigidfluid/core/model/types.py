@@ -8,7 +8,7 @@ Surfaces are numbered through: bodies 0 … n-1, then the pieces of the domain's
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -361,10 +361,21 @@ class Advance:
 @dataclass(frozen=True, slots=True)
 class Fields:
     """Nodal fields for output: ``points`` (N, d), quadratic ``cells`` (M, 6 | 10) in VTK's order, ``velocity`` (N, d),
-    ``pressure`` (N,), and a transported ``scalar`` (N,), if there is one."""
+    ``pressure`` (N,), a transported ``scalar`` (N,), if there is one, and the ``viscosity`` (N,) where it varies."""
 
     points: FloatArray
     cells: IntArray
     velocity: FloatArray
     pressure: FloatArray
     scalar: FloatArray | None = None
+    viscosity: FloatArray | None = None
+
+    @property
+    def nodal_values(self) -> dict[str, FloatArray]:
+        """All that there is at the nodes, by name."""
+        values = {one.name: getattr(self, one.name) for one in fields(Fields) if one.name != "cells"}
+        return {name: value for name, value in values.items() if value is not None}
+
+    def part(self, nodes: IntArray, cells: IntArray) -> Fields:
+        """The values at some ``nodes`` (K,), and ``cells`` (L, b) between these."""
+        return Fields(**{name: value[nodes] for name, value in self.nodal_values.items()}, cells=cells)

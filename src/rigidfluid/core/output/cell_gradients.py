@@ -1,7 +1,8 @@
-"""Quadratic fields within their cells: velocity gradients and the vorticity."""
+"""Quadratic fields within their cells: velocity gradients, vorticity and shear rate."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -44,13 +45,24 @@ def vorticity(fields: Fields) -> FloatArray:
 
 def nodal_vorticity(fields: Fields) -> FloatArray:
     """ω at the nodes, (N, k), the mean over the cells around each, in 2D its one component [1/time]."""
+    return _nodal_means(fields, vorticity, (1 if fields.points.shape[1] == 2 else 3,))
+
+
+def nodal_shear_rate(fields: Fields) -> FloatArray:
+    """γ̇ = √(½|∇u + ∇uᵀ|²) at the nodes, (N,), of the mean gradient over the cells around each [1/time]."""
+    gradient = _nodal_means(fields, velocity_gradients, (fields.points.shape[1],) * 2)
+    return np.asarray(np.linalg.norm(gradient + gradient.swapaxes(1, 2), axis=(1, 2)) * np.sqrt(0.5))
+
+
+def _nodal_means(fields: Fields, quantity: Callable[[Fields], FloatArray], shape: tuple[int, ...]) -> FloatArray:
+    """Mean at the nodes (N, …) of what cells have at their nodes (M, b, …), of that ``shape``."""
     count = len(fields.points)
     around = np.bincount(fields.cells.ravel(), minlength=count)
-    total = np.zeros((count, 1 if fields.points.shape[1] == 2 else 3))
+    total = np.zeros((count, *shape))
     for start in range(0, len(fields.cells), _AT_ONCE):
         some = replace(fields, cells=fields.cells[start : start + _AT_ONCE])
-        np.add.at(total, some.cells, vorticity(some))
-    return total / around[:, None]
+        np.add.at(total, some.cells, quantity(some))
+    return total / around.reshape(-1, *(1 for _ in shape))
 
 
 def _slopes(dimension: int) -> FloatArray:

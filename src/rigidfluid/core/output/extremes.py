@@ -31,4 +31,4 @@ class Extremes:
     def after(self, gaps: FloatArray, twist: Twist) -> Extremes:
         """Extremes with one more state in them, with each body's nearest gap (n,) [length]."""
         speed = np.sqrt(np.sum(np.square(twist.velocity), axis=1))
-        return Extremes(min(self.smallest_gap, float(gaps.min())), np.maximum(self.highest_speed, speed))
+        return Extremes(min(self.smallest_gap, float(gaps.min(initial=np.inf))), np.maximum(self.highest_speed, speed))

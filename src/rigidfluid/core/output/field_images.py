@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -29,12 +30,11 @@ def continued(fields: Fields, lattice: Lattice) -> Fields:
     ways, way = np.unique(moves[image, cell], axis=0, return_inverse=True)
     kept, cells = np.unique(way.reshape(-1, 1) * len(fields.points) + fields.cells[cell], return_inverse=True)
     node, move = kept % len(fields.points), ways[kept // len(fields.points)]
-    return Fields(
-        points=fields.points[node] + lattice.displacement(move),
-        cells=cells.reshape(-1, fields.cells.shape[1]),
-        velocity=fields.velocity[node],
-        pressure=fields.pressure[node] + move @ _jumps(fields, lattice),
-        scalar=None if fields.scalar is None else fields.scalar[node],
+    images = fields.part(node, cells.reshape(-1, fields.cells.shape[1]))
+    return replace(
+        images,
+        points=images.points + lattice.displacement(move),
+        pressure=images.pressure + move @ _jumps(fields, lattice),
     )
 
 

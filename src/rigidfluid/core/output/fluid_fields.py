@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.types import Fields
+from rigidfluid.core.output.cell_gradients import nodal_shear_rate
 from rigidfluid.core.output.optional_package import optional_package
 from rigidfluid.core.output.vtu import QUADRATIC, in_space, nodal_arrays
 from rigidfluid.described import Described
@@ -31,6 +32,8 @@ class FluidFields(Described, Fields):
         (N,) [force/length^(d-1)].
     scalar : FloatArray or None
         (N,) of a scene with a table ``[scalar]`` [scalar].
+    viscosity : FloatArray or None
+        (N,) of a fluid whose viscosity varies, at the ``shear_rate`` of each node [mass·length^(2-d)/time].
     time : float
         Time of the state [time].
     """
@@ -40,15 +43,20 @@ class FluidFields(Described, Fields):
     @classmethod
     def from_fields(cls, found: Fields, time: float) -> FluidFields:
         """The same arrays with their time."""
-        return cls(**{one.name: getattr(found, one.name) for one in fields(found)}, time=time)
+        return cls(**found.nodal_values, cells=found.cells, time=time)
 
     @property
     def vorticity(self) -> FloatArray:
         """Vorticity ∇ × u at the nodes, the mean over the cells around each: (N,) in 2D, (N, 3) in 3D [1/time]."""
         return nodal_arrays(self)["vorticity"]
 
+    @property
+    def shear_rate(self) -> FloatArray:
+        """Shear rate √(½|∇u + ∇uᵀ|²) at the nodes, of the mean gradient over the cells around each, (N,) [1/time]."""
+        return nodal_shear_rate(self)
+
     def grid(self) -> Any:
-        """Grid of PyVista with ``velocity`` of three components, ``pressure`` and ``vorticity`` at its points.
+        """Grid of PyVista with the arrays of `fields/` on disk at its points, ``velocity`` of three components.
 
         Returns
         -------

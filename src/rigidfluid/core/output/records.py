@@ -39,7 +39,7 @@ def columns(dimension: int, coordinates: Iterable[str] = COORDINATES) -> dict[st
         "joints": ("time", "step", "joint", "gap", *coordinates, "rate", *force, *quantities["torque"]),
         "energy": ("time", "step", *LEDGER_COLUMNS),
         "steps": ("time", "step", "size", "error", "unknowns", "remeshes", "cells", "quality"),
-        "probes": ("time", "step", "probe", *position, *velocity, "pressure"),
+        "probes": ("time", "step", "probe", *position, *velocity, "pressure", "scalar"),
         "driving": ("time", "step", "surface", "flux", "pressure_drop"),
         "stresslets": ("time", "step", "body", *stresslet),
         "scalar": ("time", "step", *SCALAR_COLUMNS),
@@ -157,11 +157,14 @@ def _probe_rows(system: System, probes: FloatArray, state: State, stamp: Row) ->
     if len(probes) == 0 or count_cells(state.mesh) == 0:
         return
     velocity, pressure = system.backend.probe(state.fluid, state.mesh, probes)
+    scalar = np.full(len(probes), np.nan)
+    if system.fluid is not None and system.fluid.scalar is not None:
+        scalar = system.backend.probe_scalar(state.fluid, state.mesh, probes)
     if system.window is not None:  # nothing is known of the fluid outside
         outside = ~system.window.meshed_domain(state.pose).contains(probes)
         velocity[outside], pressure[outside] = np.nan, np.nan
     for i, point in enumerate(probes):
-        yield (*stamp, i, *point.tolist(), *velocity[i].tolist(), float(pressure[i]))
+        yield (*stamp, i, *point.tolist(), *velocity[i].tolist(), float(pressure[i]), float(scalar[i]))
 
 
 def _driving_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from rigidfluid.core.output.results_folder import Product
 
 PICTURES = (
-    *("speed_field", "streamlines", "vorticity", "pressure", "scalar", "whole_mesh", "mesh", "smallest_gap"),
+    *("speed_field", "streamlines", "vorticity", "pressure", "scalar", "viscosity"),
+    *("whole_mesh", "mesh", "smallest_gap"),
     *("space", "position", "mechanisms", "speed", "gap", "rotation", "torque", "force", "coefficients"),
     *("contacts", "joints", "energy", "step", "statistics"),
 )
@@ -61,7 +62,7 @@ FILES = (
         "`fields/000000.vtu`, …",
         r"fields/\d{6,}(\.\d+)?\.p?vtu",
         "each `output.every`",
-        "velocity, pressure and vorticity; not without a fluid",
+        "velocity, pressure, vorticity, and what else the scene has; not without a fluid",
     ),
     Files(
         "`fields/000000.bodies.vtu`, `fields/000000.contacts.vtu`, …",

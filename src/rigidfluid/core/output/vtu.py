@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.model.types import Fields
-from rigidfluid.core.output.cell_gradients import nodal_vorticity
+from rigidfluid.core.output.cell_gradients import nodal_shear_rate, nodal_vorticity
 from rigidfluid.core.output.disk import open_new, replace_text
 from rigidfluid.core.output.result_file import require_result
 from rigidfluid.errors import OutputError
@@ -39,13 +39,17 @@ def write_vtu(path: Path, fields: Fields) -> None:
 
 def nodal_arrays(fields: Fields) -> dict[str, FloatArray]:
     """Arrays at the nodes as ParaView takes them: ``velocity`` (N, 3), ``pressure`` (N,) and ``vorticity``, (N,) in 2D
-    and (N, 3) in 3D, and ``scalar`` (N,) if there is one."""
+    and (N, 3) in 3D, ``scalar`` (N,) if there is one, and ``viscosity`` and ``shear_rate`` (N,) where it varies."""
     scalar = {} if fields.scalar is None else {"scalar": fields.scalar}
+    viscosity = (
+        {} if fields.viscosity is None else {"viscosity": fields.viscosity, "shear_rate": nodal_shear_rate(fields)}
+    )
     return {
         "velocity": in_space(fields.velocity),
         "pressure": fields.pressure,
         "vorticity": np.squeeze(nodal_vorticity(fields), axis=1 if fields.points.shape[1] == 2 else ()),
         **scalar,
+        **viscosity,
     }
 
 
@@ -78,8 +82,8 @@ def _write(path: Path, root: ET.Element) -> None:
         ET.ElementTree(root).write(file, encoding="utf-8", xml_declaration=True)
 
 
-def write_pvtu(path: Path, pieces: Sequence[str], dimension: int) -> None:
-    """List the VTU files of one time, their names relative to this one's folder."""
+def write_pvtu(path: Path, pieces: Sequence[str], fields: Fields) -> None:
+    """List the VTU files of one time, their names relative to this one's folder; all have what the ``fields`` have."""
     root = ET.Element(
         "VTKFile", type="PUnstructuredGrid", version="1.0", byte_order="LittleEndian", header_type="UInt64"
     )
@@ -87,8 +91,10 @@ def write_pvtu(path: Path, pieces: Sequence[str], dimension: int) -> None:
     points = ET.SubElement(grid, "PPoints")
     ET.SubElement(points, "PDataArray", type="Float64", Name="points", NumberOfComponents="3")
     data = ET.SubElement(grid, "PPointData", Vectors="velocity", Scalars="pressure")
-    for name, components in (("velocity", 3), ("pressure", 1), ("vorticity", 1 if dimension == 2 else 3)):
-        ET.SubElement(data, "PDataArray", type="Float32", Name=name, NumberOfComponents=str(components))
+    cell = fields.cells[:1]
+    for name, values in nodal_arrays(fields.part(cell.ravel(), np.arange(cell.size).reshape(cell.shape))).items():
+        components = str(int(np.prod(values.shape[1:])))
+        ET.SubElement(data, "PDataArray", type="Float32", Name=name, NumberOfComponents=components)
     for piece in pieces:
         ET.SubElement(grid, "Piece", Source=piece)
     _write(path, root)
@@ -126,7 +132,11 @@ def read_vtu(path: Path) -> Fields:
             cells=connectivity,
             velocity=arrays["velocity"].reshape(nodes, 3)[:, :dimension].astype(np.float64),
             pressure=arrays["pressure"].reshape(nodes).astype(np.float64),
-            scalar=arrays["scalar"].reshape(nodes).astype(np.float64) if "scalar" in arrays else None,
+            **{
+                name: arrays[name].reshape(nodes).astype(np.float64)
+                for name in ("scalar", "viscosity")
+                if name in arrays
+            },
         )
 
 
@@ -150,12 +160,9 @@ def _joined(pieces: Sequence[Fields]) -> Fields:
     stands_for = np.arange(len(points))
     np.minimum.at(stands_for, same[:, 1], same[:, 0])
     kept, number = np.unique(stands_for, return_inverse=True)
-    return Fields(
-        points=points[kept],
-        cells=number[cells],
-        velocity=np.concatenate([piece.velocity for piece in pieces])[kept],
-        pressure=np.concatenate([piece.pressure for piece in pieces])[kept],
-    )
+    values = [piece.nodal_values for piece in pieces]
+    every = {name: np.concatenate([each[name] for each in values]) for name in values[0]}
+    return Fields(**every, cells=cells).part(kept, number[cells])
 
 
 @contextmanager

@@ -123,7 +123,7 @@ class Writer:
         with self._writing_once(self.out / whole) as is_mine:
             if is_mine and pieces:
                 names = [Path(piece).name for piece in pieces]
-                write_pvtu(self.out / whole, names, fields.points.shape[1])
+                write_pvtu(self.out / whole, names, fields)
             elif is_mine:
                 (self.out / f"{stem}.pvtu").unlink(missing_ok=True)  # of several ranks that were killed
         return whole

@@ -8,6 +8,8 @@ from contextlib import closing, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from rigidfluid.core.case.scene_model import Case
 from rigidfluid.core.model.foreign import no_exit
 from rigidfluid.core.output.history import History
@@ -117,7 +119,7 @@ class Progress:
 
 
 def _progress(now: Simulation) -> Progress:
-    step, gap = now.clock.size(now.state.level or 0), float(now.state.gaps.min())
+    step, gap = now.clock.size(now.state.level or 0), float(now.state.gaps.min(initial=np.inf))
     return Progress(now.time, now.clock.end, step, gap, now.elapsed, now.counts.failed_remeshes, now.history)
 
 

@@ -47,6 +47,7 @@ from rigidfluid.core.run.caller_input import (
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.control import body_row, following, present_motion, with_applied
 from rigidfluid.core.run.exchange import exchanged, successor
+from rigidfluid.core.run.fluid_now import fluid_now
 from rigidfluid.core.run.initial_state import initial_state
 from rigidfluid.core.run.mesh_keys import updater_of
 from rigidfluid.core.run.observers import Observer, Observers
@@ -194,7 +195,7 @@ class Simulation(Described):
         if not count_cells(self.state.mesh):
             found, allowed = f"none, as {self.model.name!r} has no fluid", "those of a scene with a fluid"
             raise OutputError("fields", found, allowed, "Give [fluid] a backend with a mesh, as scikit-fem.")
-        return FluidFields.from_fields(self.system.backend.fields(self.state.fluid, self.state.mesh), self.time)
+        return fluid_now(self.system, self.state, self.time)
 
     def step(self) -> State:
         """Take one accepted step, record it, call who is due, and return the new state.
@@ -417,7 +418,7 @@ class Simulation(Described):
         self.stepper.system = self.mesh_updater.system = system
 
     def _facts(self) -> Mapping[str, object]:
-        gap = float(self.state.gaps.min())
+        gap = float(self.state.gaps.min(initial=np.inf))
         return {
             "scene": self.model.name,
             "time": f"{self.time:.6g} of {self.clock.end:.6g}",

@@ -102,8 +102,9 @@ def _placed(tools: Tools, state: State, pose: Pose) -> _Place:
         mesh = tools.mesh_updater.deform(state, pose)
     with tools.watch("detect"):
         contacts, gaps = detect_contacts_and_gaps(tools.system, pose, mesh)
-        nearest = int(np.argmin(gaps))
-        refuse_overlap(tools.system, nearest, float(gaps[nearest]))
+        if len(gaps):
+            nearest = int(np.argmin(gaps))
+            refuse_overlap(tools.system, nearest, float(gaps[nearest]))
     return _Place(mesh, contacts, gaps)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
+from operator import itemgetter
 
 from rigidfluid.core.mechanics.frames import to_world
 from rigidfluid.core.model.state import State
@@ -17,14 +17,16 @@ _LEAVES = "Bodies cannot pass through the domain's surfaces: end the run before,
 
 def stuck(system: System, state: State, rejection: StepRejected, time: float, shortest: float) -> StepError:
     """The error of a step that was rejected at its ``shortest`` size, from a state at a ``time``."""
-    nearest = int(np.argmin(state.gaps))
-    body, gap, surface, remedy = system.surfaces[nearest], state.gaps[nearest], "the nearest surface", rejection.remedy
-    for opening_gap, leaving, opening in _near_openings(system, state):
-        if opening_gap < gap:
-            body, gap, surface, remedy = leaving, opening_gap, repr(opening), _LEAVES
+    near = [
+        (gap, body, "the nearest surface", rejection.remedy)
+        for gap, body in zip(state.gaps.tolist(), system.surfaces, strict=False)
+    ]
+    near += [(gap, body, repr(opening), _LEAVES) for gap, body, opening in _near_openings(system, state)]
+    gap, body, surface, remedy = min(near, default=(0.0, "", "", rejection.remedy), key=itemgetter(0))
+    where = f"; body {body} is {gap:.3g} from {surface}" if near else ""
     error = StepError(
         f"{rejection.subject} at time {time:g}",
-        f"{rejection.found}, even with a step of {shortest:g}; body {body} is {gap:.3g} from {surface}",
+        f"{rejection.found}, even with a step of {shortest:g}{where}",
         rejection.allowed,
         f"{remedy} What was computed until then is kept, and --resume goes on from the last output.",
     )

@@ -54,7 +54,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
     state, system, extremes = simulation.state, simulation.system, simulation.extremes
     mesh, found, problem = simulation.model.fluid.mesh, _cycles(simulation), system.fluid
     radii = {name: body.bounding_radius for name, body in zip(system.surfaces, system.bodies, strict=False)}
-    length = max(radii.values())
+    length = max(radii.values(), default=0.0)
     remarks = layer_remarks(system, extremes.highest_speed, None if mesh is None else mesh.size_body)
     remarks += source_remarks(simulation.model, simulation.population, simulation.time)
     inertia = problem is not None and problem.inertia
@@ -134,10 +134,10 @@ def reynolds_numbers(model: Model, system: System, speeds: FloatArray) -> dict[s
     """Highest Reynolds number 2 R ρ |v| / μ of any body, with the solid's density and with the fluid's.
 
     ``speeds`` (n,) are the highest |v|, and μ is that of the shear rate |v|/2R. R is the radius of a
-    ball, of other shapes that of the smallest ball around them. None without a fluid.
+    ball, of other shapes that of the smallest ball around them. None without a fluid, or bodies.
     """
     fluid = system.fluid
-    if fluid is None:
+    if fluid is None or not system.bodies:
         return {"reynolds_solid_density": None, "reynolds": None}
     diameters = 2.0 * system.bounding_radii
     per_density = diameters * speeds / fluid.material.viscosity(speeds / diameters)

@@ -31,9 +31,9 @@ def turn_remarks(history: History, account: EnergyAccount) -> list[Remark]:
     name, time = bodies["body"][order], bodies["time"][order]
     angular_speed = np.sqrt(sum(np.square(bodies[component][order]) for component in components))
     turn = np.where(name[1:] == name[:-1], np.diff(time) * angular_speed[1:], 0.0)
-    worst = int(np.argmax(turn))
-    if turn[worst] <= FARTHEST_TURN:
+    if turn.max(initial=0.0) <= FARTHEST_TURN:
         return []
+    worst = int(np.argmax(turn))
     step = FARTHEST_TURN / float(angular_speed[name == name[worst]].max())
     text = (
         f"{str(name[worst])!r} turned by up to {turn[worst]:.2g} rad in a step: flow that is carried round with it "

@@ -30,5 +30,7 @@ class OutputTable(Table):
     """Interval of fields and checkpoints, and points that record the flow."""
 
     every: Positive = Field(description="Time between two written fields and checkpoints [time]")
-    probes: tuple[Vector, ...] = Field(default=(), description="Points that record velocity and pressure [length]")
+    probes: tuple[Vector, ...] = Field(
+        default=(), description="Points that record velocity, pressure and scalar [length]"
+    )
     stresslets: bool = Field(default=False, description="Record the stresslets of the bodies by the fluid")

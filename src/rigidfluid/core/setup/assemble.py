@@ -89,7 +89,7 @@ def assemble(model: Model, check: Callable[[Model, Pose], None] = check_geometry
         backend_type=backend.part,
         make_backend=cache(partial(backend.part, backend.options, problem)),
         detector=detector,
-        detection_type=DetectionOfImages if len(model.crossed.vectors) else detection_by(chosen.part),
+        detection_type=DetectionOfImages if model.shapes and len(model.crossed.vectors) else detection_by(chosen.part),
         detector_why=why,
         reach=_reach(detector, law, model.crossed),
         rotational_factor=rotational_factors(model.shapes, motions, model.time.end),
@@ -159,4 +159,4 @@ def _worth_measuring(bodies: Sequence[Body], walls: int, law_range: float, cross
     """
     if len(bodies) * (len(bodies) + walls) <= _MOST_PAIRS and not len(crossed.vectors):
         return math.inf
-    return law_range + 2.0 * max(body.bounding_radius for body in bodies)
+    return law_range + 2.0 * max((body.bounding_radius for body in bodies), default=0.0)

@@ -25,6 +25,9 @@ def require_changeable(model: Model) -> None:
         if value:
             remedy = f"Leave {key} out, or keep the bodies."
             raise SceneError(key, "together with bodies that enter or leave", "one of both", remedy)
+    if not model.bodies:
+        found_bodies = "none, where bodies enter or leave"
+        raise SceneError("body", found_bodies, "one at the start", "Add a table [[body]].")
     backend = model.fluid.backend.part
     if not backend.exchanges_bodies:
         found_backend, allowed = f"{backend.name!r}", "a backend whose bodies may enter and leave"

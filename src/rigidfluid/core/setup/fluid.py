@@ -7,10 +7,12 @@ from dataclasses import field
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
+from pydantic import AfterValidator
 
 from rigidfluid.core.fluid.conditions import BoundaryCondition, Value
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.fluid.material import Material
+from rigidfluid.core.geometry.given_function import guarded_function
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
 from rigidfluid.core.mesh.size.size_interface import SizeField
 from rigidfluid.core.model.body import Body
@@ -33,6 +35,11 @@ def installed_backend(name: str) -> Selected[FluidBackend]:
     """The backend of this name, with the options that it has by default."""
     part = Registry.load().get(FLUID_BACKEND, name)
     return Selected(part, part.Options())
+
+
+def _guarded_as(field: str) -> AfterValidator:
+    """Guards what is a function, given for a key."""
+    return AfterValidator(lambda value: guarded_function(value, field) if callable(value) else value)
 
 
 @checked
@@ -66,8 +73,8 @@ class Fluid:
     material: Material
     mesh: MeshTable
     inertia: bool = True
-    source: Value | None = None
-    initial: Literal["rest", "steady"] | Value = "rest"
+    source: Annotated[Value | None, _guarded_as("fluid.force")] = None
+    initial: Annotated[Literal["rest", "steady"] | Value, _guarded_as("fluid.initial")] = "rest"
     size_fields: Annotated[tuple[SizeField, ...], AnyRow] = ()
     backend: Selected[FluidBackend] = field(default_factory=lambda: installed_backend("scikit-fem"))
     scalar: Scalar | None = None

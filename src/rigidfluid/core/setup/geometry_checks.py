@@ -68,7 +68,7 @@ def initial_contacts(placed: Arrangement, pose: Pose, reach: float) -> Contacts:
     [length]."""
     bodies, walls = placed.shapes, surfaces_of(placed.domain, len(placed.shapes))
     make = partial(placed.exact_detector, placed.exact_detector.Options())
-    if not len(placed.crossed.vectors):
+    if not (bodies and len(placed.crossed.vectors)):
         return make(bodies, walls).detect(pose, None, reach)
     from rigidfluid.core.contact.pairs.image_detection import ImageDetection
 
@@ -80,12 +80,11 @@ def initial_contacts(placed: Arrangement, pose: Pose, reach: float) -> Contacts:
 def _check_extent(placed: Arrangement) -> None:
     _check_units(placed)
     farthest = float(np.max(np.abs(placed.domain.extent)))
-    radii = [shape.bounding_radius for shape in placed.shapes]
-    smallest = min(range(len(radii)), key=radii.__getitem__)
-    if radii[smallest] < SMALLEST_BODY * farthest:
+    radius, smallest = min(((shape.bounding_radius, n) for n, shape in enumerate(placed.shapes)), default=(np.inf, 0))
+    if radius < SMALLEST_BODY * farthest:
         raise SceneError(
             f"body.{smallest}",
-            f"a bounding radius of {radii[smallest]:.3g} in a domain that reaches {farthest:.3g}",
+            f"a bounding radius of {radius:.3g} in a domain that reaches {farthest:.3g}",
             f"at least {SMALLEST_BODY:g} of the domain's largest coordinate",
             "Make the domain smaller, or bring it nearer to the origin.",
         )
@@ -135,7 +134,7 @@ def _overlap(placed: Arrangement, contacts: Contacts, row: int) -> SceneError:
 
 
 def _check_facets(mesh: MeshTable, shapes: Sequence[Body]) -> None:
-    largest = max(shape.bounding_radius for shape in shapes)
+    largest = max((shape.bounding_radius for shape in shapes), default=0.0)
     least = largest / MOST_FACETS_PER_RADIUS
     if mesh.size_body < least:
         raise SceneError("mesh.size_body", mesh.size_body, f"at least {least:g} for these bodies", "Coarsen it.")
@@ -143,7 +142,7 @@ def _check_facets(mesh: MeshTable, shapes: Sequence[Body]) -> None:
 
 def _coarsest_gap(mesh: MeshTable, shapes: Sequence[Body]) -> float:
     """The largest gap that the mesh may be too coarse for [length]."""
-    smallest = min(shape.bounding_radius for shape in shapes)
+    smallest = min((shape.bounding_radius for shape in shapes), default=np.inf)
     return float((mesh.size_body / 2**mesh.refinements) ** 2 / (4.0 * smallest))
 
 

@@ -144,7 +144,7 @@ def _free_heights(model: Model, weight: FloatArray) -> FloatArray:
     lower, upper = model.domain.extent
     length = np.linalg.norm(weight, axis=1, keepdims=True)
     down = np.divide(weight, length, out=np.zeros_like(weight), where=length > 0.0)
-    position = np.array([body.position for body in model.all_bodies])
+    position = np.array([body.position for body in model.all_bodies]).reshape(-1, model.dimension)
     ahead = np.where(down > 0.0, upper - position, position - lower)
     room = ahead - _measure_bodies(inscribed_radius, model.shapes)[:, None]
     way = np.divide(np.maximum(room, 0.0), np.abs(down), out=np.full_like(room, np.inf), where=down != 0.0)

@@ -48,7 +48,7 @@ def _impact_loads(model: Model, impetus: Impetus) -> Loads:
     smallest = min((law.aim for law in model.laws), default=0.0)
     weight = np.where(prescribed, 0.0, np.linalg.norm(impetus.weight, axis=1))
     own = np.column_stack([weight, np.where(prescribed, 0.0, 0.5 * impetus.mass * speed**2)])
-    position = np.array([body.position for body in model.all_bodies])
+    position = np.array([body.position for body in model.all_bodies]).reshape(-1, model.dimension)
     radius = np.array([shape.bounding_radius for shape in model.shapes])
     together = stack_loads(own, impetus.weight, position, radius, model.domain.size)
     stacked_weight, stacked_energy = np.where(prescribed, np.inf, together.T)

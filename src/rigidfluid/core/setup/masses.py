@@ -28,9 +28,11 @@ class Masses:
 def masses_of(model: Model) -> Masses:
     """Masses of all bodies, the components of mechanisms included."""
     mass = np.array([body.density * body.shape.volume for body in model.all_bodies])
-    inertia = mass[:, None, None] * np.array([shape.unit_inertia for shape in model.shapes])
-    added = model.fluid.inert_density * np.array([added_mass(shape) for shape in model.shapes])
-    return Masses(mass, inertia, added, _submerged_weight(model, mass))
+    d, k = model.dimension, 1 if model.dimension == 2 else 3
+    unit_inertia = np.array([shape.unit_inertia for shape in model.shapes]).reshape(-1, k, k)
+    added = np.array([added_mass(shape) for shape in model.shapes]).reshape(-1, d, d)
+    inertia = mass[:, None, None] * unit_inertia
+    return Masses(mass, inertia, model.fluid.inert_density * added, _submerged_weight(model, mass))
 
 
 def _submerged_weight(model: Model, mass: FloatArray) -> FloatArray:

@@ -39,8 +39,9 @@ MOST_STEPS = 10**9
 
 def check_model(model: Model) -> None:
     """Refuse, with SceneError, a model that contradicts itself, or that its objects cannot run."""
-    if not (model.bodies or model.mechanisms):
-        raise SceneError("body", "nothing", "a body or a mechanism", "Add a table [[body]] or [[mechanism]].")
+    if not (model.bodies or model.mechanisms or isinstance(model.fluid, Fluid)):
+        allowed = "a body or a mechanism, unless there is a fluid with a mesh"
+        raise SceneError("body", "nothing", allowed, "Add a table [[body]] or [[mechanism]].")
     with all_told() as ask:
         for number, placed in enumerate(model.mechanisms):
             ask(_check_mechanism, model, placed, number)

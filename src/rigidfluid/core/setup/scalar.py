@@ -12,6 +12,7 @@ import numpy as np
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.fluid.scalar import NO_FLUX, Buoyancy, ScalarCondition, ScalarProblem, ScalarValue
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.given_function import guarded_function
 from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.core.setup.checked import Number, Positive, checked
@@ -106,7 +107,7 @@ def _checked_value(value: ScalarValue | None, at: str, domain: Domain) -> Scalar
 def _values(value: ScalarValue, at: str, domain: Domain, time: float, points: FloatArray) -> FloatArray:
     """Values (N,) at ``points`` (N, d) of a domain and of its images between periodic surfaces, where a mesh may go on;
     raises SceneError for others."""
-    found = np.asarray(value(time, domain.wrapped(points)))
+    found = np.asarray(guarded_function(value, at)(time, domain.wrapped(points)))
     if found.shape != points.shape[:1] or not np.isfinite(found).all():
         told = f"values of shape {found.shape} at time {time:g}, or not finite"
         raise SceneError(at, told, f"finite ones of shape {points.shape[:1]}", "Correct the function.")

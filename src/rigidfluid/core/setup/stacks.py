@@ -20,9 +20,9 @@ def stack_loads(
     below counts. In a heap of equal disks the bodies that overlap one of them are two columns, so that it gets twice
     the mean load.
     """
-    heaviest = weight[np.argmax(np.linalg.norm(weight, axis=1))]
-    if not heaviest.any():
+    if not weight.any():
         return own
+    heaviest = weight[np.argmax(np.linalg.norm(weight, axis=1))]
     direction = heaviest / np.linalg.norm(heaviest)
     pairs, share = _overlapping(direction, position, radius), 1.0 / _side_by_side(direction, radius, box)
     pressing = []

@@ -98,7 +98,7 @@ class Canvas:
 def body_shells(results: Results) -> list[Shell]:
     """Surfaces of the bodies, the coarser the more there are."""
     bodies = results.system.bodies
-    count = int(np.clip(_POINTS // len(bodies), _FEWEST, _MOST))
+    count = int(np.clip(_POINTS // max(len(bodies), 1), _FEWEST, _MOST))
     return [Shell.cover(body, count) for body in bodies]
 
 

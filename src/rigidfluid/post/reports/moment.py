@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -25,10 +25,10 @@ class Moment:
     time: float
     section: Section
     centre: FloatArray
-    width: float
-    gap: float
+    width: float = 0.0
+    gap: float = np.inf
     outlines: tuple[FloatArray, ...] = ()
-    has_body: bool = True
+    has_body: bool = False
     extent: tuple[FloatArray | float, FloatArray | float] = (-np.inf, np.inf)
 
 
@@ -67,21 +67,26 @@ def moment(results: Results, output: int, plane: ViewPlane, body: int) -> Moment
     time, path = results.series[output]
     state = results.state_at(time)
     centre = results.path(body)[state]
-    return Moment(
+    whole = Moment(
         time=time,
         section=Section.cut(results.fields(path), plane, centre),
         centre=plane.flat(centre),
+        extent=plane.extent(*results.system.domain.extent),
+    )
+    if not results.names:
+        return whole
+    return replace(
+        whole,
         width=2.0 * results.system.bodies[body].bounding_radius,
         gap=float(results.bodies["gap"][state, body]),
         outlines=tuple(cuts(results, state, plane, centre)),
         has_body=bool(results.present[state, body]),
-        extent=plane.extent(*results.system.domain.extent),
     )
 
 
 def nearest_body(results: Results) -> int:
-    """The body that came nearest to anything."""
-    return int(np.argmin(results.bodies["gap"].min(axis=0)))
+    """Number of the body that came nearest to anything, 0 without bodies."""
+    return int(np.argmin(results.bodies["gap"].min(axis=0))) if results.names else 0
 
 
 def narrowest(results: Results, body: int | None) -> tuple[int, int]:

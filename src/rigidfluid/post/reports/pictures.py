@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -33,6 +34,12 @@ Over = Callable[[Axes, Moment, View], object]
 def flow_picture(shown: Sequence[Moment], scale: Scale) -> Figure:
     """Speed, pressure or vorticity, of a slice its component to the observer, in the whole domain."""
     return _panels(shown, [View.whole(moment) for moment in shown], scale)
+
+
+def viscosity_picture(shown: Sequence[Moment], scale: Scale, yield_stress: float | None) -> Figure:
+    """Viscosity, with a line where the stress is the ``yield_stress`` [force/length^(d-1)], if there is one."""
+    whole = [View.whole(moment) for moment in shown]
+    return _panels(shown, whole, scale, None if yield_stress is None else partial(_draw_yielded, yield_stress))
 
 
 def streamline_picture(shown: Sequence[Moment], scale: Scale) -> Figure:
@@ -116,6 +123,13 @@ def _look_at(axes: Axes, view: View) -> None:
 
 def _draw_mesh(axes: Axes, moment: Moment, view: View) -> None:
     axes.add_collection(LineCollection(list(moment.section.edges), colors="white", linewidths=0.3), autolim=False)
+
+
+def _draw_yielded(yield_stress: float, axes: Axes, moment: Moment, view: View) -> None:
+    """A line where the stress is the ``yield_stress``, if it is that anywhere."""
+    triangulation, stress = moment.section.triangles(moment.section.stress)
+    if stress.min() < yield_stress < stress.max():
+        axes.tricontour(triangulation, stress, levels=[yield_stress], colors="white", linewidths=1.0)
 
 
 def _draw_streamlines(axes: Axes, moment: Moment, view: View) -> None:

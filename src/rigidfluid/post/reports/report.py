@@ -11,6 +11,7 @@ from typing import NamedTuple
 import matplotlib
 import numpy as np
 
+from rigidfluid.core.model.generalised_newtonian import GeneralisedNewtonian
 from rigidfluid.core.output.disk import replace_file, writing
 from rigidfluid.core.output.results_folder import join_folder
 from rigidfluid.core.output.run_files import ADDED, FILES, RUN
@@ -29,7 +30,7 @@ from rigidfluid.post.reports.lines import (
     step_plot,
 )
 from rigidfluid.post.reports.mechanisms import mechanism_plot
-from rigidfluid.post.reports.moment import moment, narrowest, nearest_body, shown_outputs
+from rigidfluid.post.reports.moment import Moment, moment, narrowest, nearest_body, shown_outputs
 from rigidfluid.post.reports.narrowest import gap_middle
 from rigidfluid.post.reports.page import page
 from rigidfluid.post.reports.pictures import (
@@ -37,11 +38,12 @@ from rigidfluid.post.reports.pictures import (
     gap_picture,
     mesh_picture,
     streamline_picture,
+    viscosity_picture,
     whole_mesh_picture,
 )
 from rigidfluid.post.reports.results import Results, read_results
 from rigidfluid.post.reports.rotation_plot import rotation_plot, torque_plot, turning
-from rigidfluid.post.reports.scale import QUANTITIES
+from rigidfluid.post.reports.scale import QUANTITIES, Scale
 from rigidfluid.post.reports.shared_scale import shared_scale, shared_scales
 from rigidfluid.post.reports.space import dry_space_picture, flow_space_picture
 from rigidfluid.post.reports.style import STYLE
@@ -112,6 +114,12 @@ def _flow_pictures(results: Results, plane: ViewPlane, body: int | None) -> Iter
     if shown[-1].section.fields.scalar is not None:
         caption = f"The scalar that the fluid carries along.{where}"
         yield "scalar", caption, flow_picture(shown, shared_scale(results, "scalar", plane, body)), raster
+    if shown[-1].section.fields.viscosity is not None:
+        stress = _yield_stress(results)
+        line = "" if stress is None else " Inside of the white line the stress is below the yield stress."
+        caption = f"Viscosity.{line}{where}"
+        scale = shared_scale(results, "viscosity", plane, body)
+        yield "viscosity", caption, viscosity_picture(shown, scale, stress), raster
     yield "whole_mesh", f"The whole mesh at the last output time.{where}", whole_mesh_picture(shown[-1], speed), raster
     if where:
         yield (
@@ -120,6 +128,15 @@ def _flow_pictures(results: Results, plane: ViewPlane, body: int | None) -> Iter
             flow_space_picture(results, shown, plane, speed),
             raster,
         )
+    if results.names:
+        yield from _close_ups(results, shown, plane, speed, body)
+
+
+def _close_ups(
+    results: Results, shown: Sequence[Moment], plane: ViewPlane, speed: Scale, body: int | None
+) -> Iterator[Picture]:
+    """Pictures of the mesh about a body, and of the smallest gap."""
+    raster, where = ("png",), _slice_location(results, plane, nearest_body(results) if body is None else body)
     whose = "the body that came nearest to another surface" if body is None else results.names[body]
     about = [moment for moment in shown if moment.has_body]
     if about:
@@ -132,9 +149,18 @@ def _flow_pictures(results: Results, plane: ViewPlane, body: int | None) -> Iter
         yield "smallest_gap", caption, picture, raster
 
 
+def _yield_stress(results: Results) -> float | None:
+    """Yield stress of the fluid, None where it flows under any stress [force/length^(d-1)]."""
+    fluid = results.system.fluid
+    if fluid is None or not isinstance(fluid.material, GeneralisedNewtonian):
+        return None
+    return fluid.material.yield_stress
+
+
 def _slice_location(results: Results, plane: ViewPlane, body: int) -> str:
     """Sentence that locates the slice of a 3D run; empty in 2D."""
-    return f" In the {plane.words} through {results.names[body]}." if results.system.dimension == 3 else ""
+    through = results.names[body] if results.names else "the middle of the domain"
+    return f" In the {plane.words} through {through}." if results.system.dimension == 3 else ""
 
 
 def _pictures(results: Results, plane: ViewPlane, body: int | None) -> Iterator[Picture]:
@@ -145,6 +171,16 @@ def _pictures(results: Results, plane: ViewPlane, body: int | None) -> Iterator[
     elif results.system.dimension == 3:
         times = [results.outputs[output][0] for output in shown_outputs(results)]
         yield "space", "The bodies, and the paths of a few.", dry_space_picture(results, times, plane), ("png",)
+    if results.names:
+        yield from _body_plots(results, plane)
+    yield "energy", "Energy supplied, and where it is.", energy_plot(results), both
+    if results.model.time.tolerance is not None:
+        yield "step", "How long the steps are.", step_plot(results), both
+
+
+def _body_plots(results: Results, plane: ViewPlane) -> Iterator[Picture]:
+    """Plots of bodies over time; each is made when it is asked for."""
+    both = ("png", "svg")
     yield "position", "Where the bodies are.", position_plot(results, plane), both
     if results.system.motions.names:
         yield "mechanisms", "Ways of the mechanisms and of their components.", mechanism_plot(results), both
@@ -163,9 +199,6 @@ def _pictures(results: Results, plane: ViewPlane, body: int | None) -> Iterator[
         yield "contacts", "Contacts: how many, the largest force, the least gap.", contact_plot(results), both
     if results.joints:
         yield "joints", "How far joints have moved, and what acts in them.", joint_plot(results), both
-    yield "energy", "Energy supplied, and where it is.", energy_plot(results), both
-    if results.model.time.tolerance is not None:
-        yield "step", "How long the steps are.", step_plot(results), both
 
 
 def _data(out: Path) -> Iterator[tuple[str, str]]:

@@ -26,7 +26,7 @@ from rigidfluid.core.setup.assemble import assemble
 from rigidfluid.core.setup.description import refuse_description
 from rigidfluid.core.setup.model import Model
 from rigidfluid.errors import OutputError
-from rigidfluid.post.reports.state_tables import changing_bodies, checked_rows, table_by_state
+from rigidfluid.post.reports.state_tables import changing_bodies, checked_rows, nobody_by_state, table_by_state
 from rigidfluid.post.reports.units import Units
 
 NEEDED = (
@@ -117,7 +117,9 @@ class Results:
 
     def path(self, body: int) -> FloatArray:
         """Positions of a body by number (s, d), along periods those of its image in the domain; its first before it
-        enters, its last after it has left [length]."""
+        enters, its last after it has left; the middle of the domain in a run without bodies [length]."""
+        if not self.names:
+            return np.tile(np.mean(self.system.domain.extent, axis=0), (len(self.time), 1))
         there = np.flatnonzero(self.present[:, body])
         state = np.clip(np.arange(len(self.time)), there[0], there[-1])
         return self.system.domain.wrapped(self.quantity("position")[state, body])
@@ -143,7 +145,8 @@ def read_results(folder: Path, *, motion_only: bool = False, model: Model | None
     else:
         system = assemble(model)
     count, links = len(system.bodies), len(_joint_names(system))
-    wanted = {"bodies": len(moving(system))} | ({} if motion_only else {"energy": 1, "joints": links})
+    bodies = len(moving(system))
+    wanted = {"bodies": bodies} | ({} if motion_only and bodies else {"energy": 1, "joints": links})
     tables |= {
         name: table_by_state(folder, name, system, each, complete=complete)
         for name, each in wanted.items()
@@ -152,13 +155,14 @@ def read_results(folder: Path, *, motion_only: bool = False, model: Model | None
     whole = min(len(table["step"]) for table in tables.values())
     if not complete:
         tables = {name: {key: values[:whole] for key, values in table.items()} for name, table in tables.items()}
-    by_state = tables["bodies"]
-    steps = by_state["step"][:, 0]
+    stamps = tables["bodies" if bodies else "energy"]
+    by_state = tables["bodies"] if bodies else nobody_by_state(model.dimension, len(stamps["time"]))
+    steps = stamps["step"][:, 0]
     return Results(
         summary=summary,
         model=model,
         system=system,
-        time=by_state["time"][:, 0],
+        time=stamps["time"][:, 0],
         bodies={name: values[:, :count] for name, values in by_state.items()},
         joints=tables.get("joints", {}),
         energy={name: values[:, 0] for name, values in tables.get("energy", {}).items()},

@@ -10,13 +10,13 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import AsinhNorm, Colormap, Normalize
+from matplotlib.colors import AsinhNorm, Colormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 
 from rigidfluid.core.geometry.arrays import FloatArray
 
 COLOURMAP, SIGNED_COLOURMAP, HOT_COLOURMAP = "viridis", "RdBu_r", "inferno"
-Quantity = Literal["speed", "vorticity", "pressure", "scalar"]
+Quantity = Literal["speed", "vorticity", "pressure", "scalar", "viscosity"]
 QUANTITIES: tuple[Quantity, ...] = ("speed", "vorticity", "pressure")
 """Quantities that every fluid has."""
 
@@ -41,14 +41,14 @@ class Scale:
     def fit(cls, quantity: Quantity, values: Sequence[FloatArray], areas: Sequence[FloatArray]) -> Scale:
         """Fit the range to values (K,), each on an area (K,).
 
-        Speeds have even steps from zero to the highest, scalars from the lowest. Vorticity and pressure are symmetric
-        about zero and strong, even without bound, in small places: almost all of the area has colours of its own, weak
-        values among them.
+        Speeds have even steps from zero to the highest, scalars from the lowest, viscosities equal ratios. Vorticity
+        and pressure are symmetric about zero and strong, even without bound, in small places: almost all of the area
+        has colours of its own, weak values among them.
         """
         size, weights = np.abs(np.concatenate(values)), np.concatenate(areas)
         if quantity == "speed":
             return cls(quantity, 0.0, float(size.max()), float(size.max()))
-        if quantity == "scalar":
+        if quantity in ("scalar", "viscosity"):
             lowest, highest = (float(end(np.concatenate(values))) for end in (np.min, np.max))
             return cls(quantity, lowest, highest, highest)
         usual, highest = np.percentile(size, (_USUAL, _MOST), weights=weights, method="inverted_cdf").tolist()
@@ -62,6 +62,8 @@ class Scale:
     @property
     def norm(self) -> Normalize:
         """Share of the range that a value is at."""
+        if self.quantity == "viscosity":
+            return LogNorm(self.lowest, self.highest)
         if self.lowest == 0.0 or self.linear == self.highest:
             return Normalize(self.lowest, self.highest or 1.0)
         return AsinhNorm(self.linear, self.lowest, self.highest)
@@ -73,8 +75,13 @@ class Scale:
     def draw_bar(self, figure: Figure, panels: Sequence[Axes], dimension: int) -> None:
         """Draw the colour bar next to the panels."""
         extend = "both" if self.lowest < 0.0 else "max"
-        area = "force/area" if dimension == 3 else "force/length"
-        unit = {"speed": "length/time", "vorticity": "1/time", "pressure": area}.get(self.quantity)
+        area = "area" if dimension == 3 else "length"
+        unit = {
+            "speed": "length/time",
+            "vorticity": "1/time",
+            "pressure": f"force/{area}",
+            "viscosity": f"force·time/{area}",
+        }.get(self.quantity)
         label = self.quantity if unit is None else f"{self.quantity} [{unit}]"
         colours = ScalarMappable(self.norm, self.map)
         bar = figure.colorbar(colours, ax=list(panels), label=label, shrink=0.8, extend=extend)

@@ -10,7 +10,7 @@ from matplotlib.tri import Triangulation
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.types import Fields
-from rigidfluid.core.output.cell_gradients import vorticity
+from rigidfluid.core.output.cell_gradients import nodal_shear_rate, vorticity
 from rigidfluid.errors import OutputError
 from rigidfluid.post.reports.plane import cell_by_cell, corner_triangles, fine_triangles
 from rigidfluid.post.reports.raster import Grid, Sampling
@@ -64,14 +64,20 @@ class Section:
             case "pressure":
                 return self.fields.pressure
             case "scalar":
-                return self._scalar
+                return self._found("scalar", self.fields.scalar, "[scalar]")
+            case "viscosity":
+                return self._found("viscosity", self.fields.viscosity, "[fluid.material]")
 
     @property
-    def _scalar(self) -> FloatArray:
-        """The scalar that the fluid carries along, (N,); raises OutputError where there is none."""
-        if self.fields.scalar is None:
-            raise OutputError("scalar", "none in these fields", "the fields of a scene with [scalar]", "Show another.")
-        return self.fields.scalar
+    def stress(self) -> FloatArray:
+        """Viscous stress |τ| = μ γ̇ at the nodes, (N,) [force/length^(d-1)]."""
+        return self.values("viscosity") * nodal_shear_rate(self.fields)
+
+    def _found(self, name: str, values: FloatArray | None, table: str) -> FloatArray:
+        """Values (N,) that scenes with a ``table`` have; raises OutputError where there are none."""
+        if values is None:
+            raise OutputError(name, "none in these fields", f"the fields of a scene with {table}", "Show another.")
+        return values
 
     def triangles(self, values: FloatArray) -> tuple[Triangulation, FloatArray]:
         """Triangles in the plane and values at their corners, of ``values`` (N,) at the nodes, or (M, b) at those of

@@ -68,8 +68,7 @@ def cut_cells(fields: Fields, normal: FloatArray, through: FloatArray) -> Fields
     above = ((fields.points - through) @ normal >= 0.0)[fields.cells]
     kept, cells = np.unique(fields.cells[above.any(axis=1) & ~above.all(axis=1)], return_inverse=True)
     cells = cells.reshape(-1, fields.cells.shape[1])
-    scalar = None if fields.scalar is None else fields.scalar[kept]
-    return Fields(fields.points[kept], cells, fields.velocity[kept], fields.pressure[kept], scalar)
+    return fields.part(kept, cells)
 
 
 def cut_faces(nodes: FloatArray, cells: IntArray, normal: FloatArray, through: FloatArray) -> FloatArray:

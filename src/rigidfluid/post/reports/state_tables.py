@@ -38,6 +38,12 @@ def table_by_state(folder: Path, name: str, system: System, count: int, *, compl
     return {key: values.astype(np.float64).reshape(-1, count) for key, values in table if KINDS.get(key) is not str}
 
 
+def nobody_by_state(dimension: int, states: int) -> dict[str, FloatArray]:
+    """The table of bodies by column, (states, 0), of a run without any."""
+    names = columns(dimension)["bodies"]
+    return {name: np.zeros((states, 0)) for name in names if KINDS.get(name) is not str}
+
+
 def _rows_before_change(rows: list[Row], step: int, body: int, order: Sequence[str]) -> list[Row]:
     """Rows of states before the first one that has another body than is next in the ``order``."""
     other = next((row[step] for i, row in enumerate(rows) if row[body] != order[i % len(order)]), None)

@@ -132,12 +132,12 @@ def _spread(results: Results, across: FloatArray) -> tuple[FloatArray, FloatArra
 
 
 def _positions(results: Results) -> FloatArray:
-    """Positions of all bodies at all states in which they are there, (N, 3)."""
-    return np.asarray(results.quantity("position")[results.present])
+    """Positions of all bodies at all states in which they are there, (N, 3); one without bodies."""
+    return np.asarray(results.quantity("position")[results.present] if results.names else np.zeros((1, 3)))
 
 
 def _least_spread(results: Results) -> float:
-    return _STILL * float(results.system.bounding_radii.max())
+    return _STILL * float(results.system.bounding_radii.max(initial=0.0)) or np.inf
 
 
 def _oriented(right: FloatArray, up: FloatArray, *, rises: bool) -> ViewPlane:

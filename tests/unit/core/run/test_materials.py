@@ -1,5 +1,8 @@
 """Runs in fluids whose viscosity varies: their ledger, resumption, and the scenes that are refused."""
 
+import xml.etree.ElementTree as ET
+
+import numpy as np
 import pytest
 from scenes import wet_tables
 
@@ -8,6 +11,7 @@ from rigidfluid.api import Simulation, model_of, scene_from_dict
 from rigidfluid.core.setup.assemble import assemble
 from rigidfluid.core.setup.features import features
 from rigidfluid.errors import PluginError, RigidfluidError, SceneError, StepError
+from rigidfluid.post.reports import report
 
 DISK = {"type": "sphere", "radius": 0.12, "position": [0.5, 0.6], "density": 3.0}
 CARREAU = {
@@ -73,6 +77,29 @@ def test_a_body_falls_faster_in_what_thins():
         speeds.append(-it.state.twist.velocity[0, 1])
     assert speeds == sorted(speeds)
     assert speeds[1] > 1.05 * speeds[0]
+
+
+@pytest.mark.parametrize("material", [CARREAU, BINGHAM], ids=["carreau", "bingham"])
+def test_the_viscosity_is_in_fields_files_and_report(material, tmp_path):
+    it = Simulation(scene_from_dict(tables(material, output={"every": 0.04})), tmp_path)
+    it.go(0.04)
+    found, read = it.fields(), rigidfluid.load_results(tmp_path).fields()
+    it.close()
+    expected = it.system.fluid.material.viscosity(found.shear_rate)
+    assert np.ptp(expected) > 0.01
+    np.testing.assert_array_equal(found.viscosity, expected)
+    np.testing.assert_allclose(read.viscosity, expected, rtol=1e-6)
+    written = ET.parse(tmp_path / "fields" / "000001.vtu").iter("DataArray")
+    assert {"viscosity", "shear_rate"} < {array.get("Name") for array in written}
+    report(tmp_path)
+    assert (tmp_path / "report" / "viscosity.png").exists()
+    assert ("yield stress" in (tmp_path / "report.html").read_text()) == (material is BINGHAM)
+
+
+def test_one_viscosity_has_no_field(tmp_path):
+    given = tables(None)
+    given["fluid"]["viscosity"] = 0.1
+    assert Simulation(scene_from_dict(given)).fields().viscosity is None
 
 
 def formula(viscosity):

@@ -397,7 +397,7 @@ def test_nodes_that_pieces_share_are_one(tmp_path):
     second = replace(second, points=second.points * (1 + 1e-15))
     vtu.write_vtu(tmp_path / "a.0.vtu", first)
     vtu.write_vtu(tmp_path / "a.1.vtu", second)
-    vtu.write_pvtu(tmp_path / "a.pvtu", ["a.0.vtu", "a.1.vtu"], 2)
+    vtu.write_pvtu(tmp_path / "a.pvtu", ["a.0.vtu", "a.1.vtu"], first)
     read = read_vtu(tmp_path / "a.pvtu")
     assert len(read.points) == 9
     np.testing.assert_allclose(read.points[read.cells[1]], second.points, atol=1e-14)

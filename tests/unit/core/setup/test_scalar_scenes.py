@@ -61,9 +61,15 @@ def test_the_content_of_disk_and_fluid_changes_by_the_walls_across_new_meshes(tm
     np.testing.assert_allclose(rate[regular], outside[2:][regular], atol=1e-10)
 
 
-def test_fields_have_the_scalar(tmp_path: Path) -> None:
-    rigidfluid.run(scene(), tmp_path)
+def test_fields_and_probes_have_the_scalar(tmp_path: Path) -> None:
+    probes = [[0.5, 0.6], [0.2, 1.4], [0.8, 0.3]]
+    rigidfluid.run(scene(output={"every": 0.06, "probes": probes}), tmp_path)
     fields = load_results(tmp_path).fields(0.12)
+    near = [np.argmin(np.linalg.norm(fields.points - point, axis=1)) for point in probes]
+    seen = load_results(tmp_path).probes["scalar"].reshape(-1, 3)
+    assert fields.scalar is not None
+    np.testing.assert_allclose(seen[-1], fields.scalar[near], atol=0.02)
+    assert seen[-1].max() > 0.7 > 0.1 > seen[-1].min()
     assert fields.scalar is not None
     assert fields.scalar.max() == pytest.approx(load_results(tmp_path).scalar["greatest"][-1], rel=1e-6)
 
@@ -78,9 +84,16 @@ def test_a_run_is_resumed_to_the_last_bit(tmp_path: Path) -> None:
 
 def test_a_scene_without_one_has_no_rows() -> None:
     history = rigidfluid.run(
-        scene_from_dict({**scene().to_dict(), "scalar": None, "time": {"end": 0.01, "step": 0.01}})
+        scene_from_dict(
+            {
+                **scene(output={"every": 0.01, "probes": [[0.2, 0.3]]}).to_dict(),
+                **{"scalar": None, "time": {"end": 0.01, "step": 0.01}},
+            }
+        )
     )
     assert len(history.scalar["content"]) == len(history.scalar_fluxes["flux"]) == 0
+    assert np.isnan(history.probes["scalar"]).all()
+    assert len(history.probes["scalar"]) == 2
 
 
 def test_without_expansion_the_flow_does_not_feel_it() -> None:

@@ -8,12 +8,15 @@ import numpy as np
 import pytest
 from matplotlib import rc_context
 from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from matplotlib.tri import TriContourSet
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.types import Fields
-from rigidfluid.core.output.cell_gradients import EDGES, nodal_vorticity, vorticity
+from rigidfluid.core.output.cell_gradients import EDGES, nodal_shear_rate, nodal_vorticity, vorticity
+from rigidfluid.errors import OutputError
 from rigidfluid.post.reports.moment import Moment
-from rigidfluid.post.reports.pictures import flow_picture, streamline_picture, whole_mesh_picture
+from rigidfluid.post.reports.pictures import flow_picture, streamline_picture, viscosity_picture, whole_mesh_picture
 from rigidfluid.post.reports.raster import Grid
 from rigidfluid.post.reports.scale import QUANTITIES, Scale
 from rigidfluid.post.reports.section import Section
@@ -70,6 +73,41 @@ def test_vorticity_at_a_node_is_the_mean_of_its_cells(monkeypatch: pytest.Monkey
     expected = [np.mean(sides[fields.cells == node]) for node in range(len(fields.points))]
     np.testing.assert_allclose(nodal_vorticity(fields)[:, 0], expected, atol=1e-13)
     assert np.abs(nodal_vorticity(fields)[at_kink, 0]).max() < 0.5
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_shear_rate_of_a_shear_is_its_slope_and_that_of_a_rotation_is_zero(dimension: int) -> None:
+    fields = curved_cell(dimension)
+    shear = np.zeros((dimension, dimension))
+    shear[0, 1] = 3.0
+    for gradient, rate in ((shear, 3.0), (shear - shear.T, 0.0), (2.0 * np.diag([1.0, -1.0, 0.0][:dimension]), 4.0)):
+        found = nodal_shear_rate(with_velocity(fields, fields.points @ gradient.T))
+        np.testing.assert_allclose(found, rate, atol=1e-12)
+
+
+def test_the_line_in_the_picture_of_a_viscosity_is_where_the_stress_is_the_yield_stress() -> None:
+    """In a flow y² with the viscosity 1 + x the stress is 2 y (1 + x)."""
+    fields = square(8)
+    x, y = fields.points.T
+    fields = replace(with_velocity(fields, np.stack([y**2, 0.0 * x], axis=1)), viscosity=1.0 + x)
+    scale = Scale.fit("viscosity", *zip(moment(fields).section.spread("viscosity"), strict=True))
+    assert (scale.lowest, scale.highest) == (1.0, 2.0)
+    lines = {stress: _lines(viscosity_picture([moment(fields)], scale, stress)) for stress in (None, 1.0, 9.0)}
+    assert lines[None] == lines[9.0] == []
+    (line,) = lines[1.0]
+    np.testing.assert_allclose(2.0 * line[:, 1] * (1.0 + line[:, 0]), 1.0, atol=0.01)
+    assert len(line) > 8
+
+
+def _lines(figure: Figure) -> list[FloatArray]:
+    """Points (K, 2) of the contours in the first panel."""
+    sets = [each for each in figure.axes[0].collections if isinstance(each, TriContourSet)]
+    return [np.asarray(path.vertices) for each in sets for path in each.get_paths()]
+
+
+def test_a_viscosity_that_does_not_vary_has_no_picture() -> None:
+    with pytest.raises(OutputError, match=r"viscosity: found none in these fields.*\[fluid.material\]"):
+        moment(square(1)).section.values("viscosity")
 
 
 def test_poiseuille_flow_has_a_vorticity_linear_across_the_channel() -> None:

@@ -26,7 +26,7 @@ def change_too_fast(system: System, state: State, pose: Pose, mesh_at: Callable[
     """
     moved = travel(system, state.pose, pose)
     before = least_gaps(system, state.pose, state.gaps)
-    if np.all(moved + moved.max() <= (1.0 - CLOSEST_APPROACH) * before):
+    if np.all(moved + moved.max(initial=0.0) <= (1.0 - CLOSEST_APPROACH) * before):
         return False  # too far away for that: no need to measure
     try:
         mesh = system.detection.mesh_at(pose, mesh_at)

@@ -76,7 +76,9 @@ def flat_walls(bodies: Sequence[Body], walls: Sequence[Wall]) -> FloatArray:
     """A point and the unit normal of each flat wall around ``bodies``, (w, 2, d)."""
     planes = [plane for wall in walls if (plane := wall.shape.plane)]
     rows = [[plane.point, plane.unit_normal] for plane in planes]
-    return np.array(rows, dtype=float).reshape(len(rows), 2, bodies[0].dimension if bodies else 0)
+    return np.array(rows, dtype=float).reshape(
+        len(rows), 2, bodies[0].dimension if bodies else len(planes and planes[0].point)
+    )
 
 
 @njit(cache=True, nogil=True)

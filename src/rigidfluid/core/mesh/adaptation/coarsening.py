@@ -45,4 +45,4 @@ def is_due(reference: Pose, before: Pose, after: Pose, sizes: Sizes) -> bool:
 
 def _farthest(reference: Pose, pose: Pose) -> float:
     """Largest distance of a body from its place in another pose [length]."""
-    return float(np.linalg.norm(pose.position - reference.position, axis=1).max())
+    return float(np.linalg.norm(pose.position - reference.position, axis=1).max(initial=0.0))
