@@ -31,6 +31,8 @@ class FluidFields(Described, Fields):
         (N,) [force/length^(d-1)].
     scalar : FloatArray or None
         (N,) of a scene with a table ``[scalar]`` [scalar].
+    cell_errors : FloatArray or None
+        (M,) squared errors of the cells in the norm of dissipation, with ``mesh.estimate`` [energy/time].
     time : float
         Time of the state [time].
     """

@@ -194,7 +194,8 @@ class Simulation(Described):
         if not count_cells(self.state.mesh):
             found, allowed = f"none, as {self.model.name!r} has no fluid", "those of a scene with a fluid"
             raise OutputError("fields", found, allowed, "Give [fluid] a backend with a mesh, as scikit-fem.")
-        return FluidFields.from_fields(self.system.backend.fields(self.state.fluid, self.state.mesh), self.time)
+        nodal = self.system.backend.fields(self.state.fluid, self.state.mesh)
+        return FluidFields.from_fields(replace(nodal, cell_errors=self.state.cell_errors), self.time)
 
     def step(self) -> State:
         """Take one accepted step, record it, call who is due, and return the new state.

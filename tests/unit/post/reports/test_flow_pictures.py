@@ -10,8 +10,9 @@ from matplotlib import rc_context
 from matplotlib.colors import to_hex
 
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.quadratic_cells import EDGES
 from rigidfluid.core.model.types import Fields
-from rigidfluid.core.output.cell_gradients import EDGES, nodal_vorticity, vorticity
+from rigidfluid.core.output.cell_gradients import nodal_vorticity, vorticity
 from rigidfluid.post.reports.moment import Moment
 from rigidfluid.post.reports.pictures import flow_picture, streamline_picture, whole_mesh_picture
 from rigidfluid.post.reports.raster import Grid
