@@ -51,6 +51,7 @@ class SparseBackend(TaylorHoodBackend):
     exchanges_bodies: ClassVar[bool] = True
     held_fluxes: ClassVar[bool] = True
     stresslets: ClassVar[bool] = True
+    cell_errors: ClassVar[bool] = True
 
     options: SparseOptions
 

@@ -62,6 +62,8 @@ def advance(answer: Any, part: Any, fluid: Any, mesh: Any, step: Step) -> None:
     _refuse_negative(answer.kinetic_energy, "kinetic_energy")
     if step.stresslets and part.stresslets:
         refuse_other_rows(answer.stresslet, (count, d, d), "stresslet", shorter=True)
+    if step.cell_errors and part.cell_errors and not step.provisional:
+        refuse_other_rows(answer.cell_errors, (len(mesh.cells),), "cell_errors", shorter=True)
     if answer.stress_power is not None:
         refuse_no_number(answer.stress_power, "stress_power", shorter=True)
     if part.scalars and part.problem.scalar is not None and not step.provisional:

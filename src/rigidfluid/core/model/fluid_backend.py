@@ -59,6 +59,8 @@ class FluidBackend(Part):
     """Tell whether it solves for a transported scalar; else such scenes are refused."""
     stresslets: ClassVar[bool] = False
     """Tell whether it gives stresslets of bodies to a `Step` that wants them."""
+    cell_errors: ClassVar[bool] = False
+    """Tell whether it gives errors of cells to a `Step` that wants them."""
     state_format: ClassVar[str | None] = None
     """Name of the format of its state. Backends of one format resume each other's runs, and by `joined` and `cut` those
     of other numbers of ranks; None where neither can be."""

@@ -129,7 +129,8 @@ class State:
     ``jumped``: the latest tick at which a prescribed velocity was changed by a jump, None before the first.
     ``springs``: those along the surfaces of contacts, None where there are none. ``stresslet`` (n, d, d): by the fluid
     [force·length]; None at the start, and where it is not wanted. ``scalar``: account of the transported scalar over
-    the latest step; None at the start, and without one.
+    the latest step; None at the start, and without one. ``cell_errors`` (M,): squared errors of the mesh's cells in the
+    latest step [energy/time]; None on a new mesh, and where they are not wanted.
     """
 
     tick: int
@@ -158,6 +159,7 @@ class State:
     springs: TangentialSprings | None = None
     stresslet: FloatArray | None = None
     scalar: ScalarAccount | None = None
+    cell_errors: FloatArray | None = None
 
     @property
     def is_on_new_mesh(self) -> bool:

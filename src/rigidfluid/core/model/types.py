@@ -273,7 +273,8 @@ class Step:
     ``turning`` (n, d+k): impulses whose inviscid response is added to the convecting velocity,
     zero but for steps in which contacts turn bodies around [force·time | force·length·time].
     ``provisional``: the step will be solved again, along another path of the bodies, and five digits do.
-    ``links``: what else holds the motions at the new time. ``stresslets``: the bodies' stresslets are wanted.
+    ``links``: what else holds the motions at the new time. ``stresslets``: the bodies' stresslets are wanted;
+    ``cell_errors``: errors of cells are wanted.
     """
 
     time: float
@@ -292,6 +293,7 @@ class Step:
     provisional: bool = False
     links: Links = NO_LINKS
     stresslets: bool = False
+    cell_errors: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -340,6 +342,8 @@ class Advance:
     ``stresslet`` (n, d, d): symmetric first moment of the fluid's tractions on each body about its centre, ∮ ½ (a σ·n +
     σ·n a) with n into the fluid and its trace, for a pressure of zero mean in an enclosed flow; None where it is not
     wanted [force·length]. ``scalar``: account of a transported scalar, None without one, and in provisional steps.
+    ``cell_errors`` (M,): squared error of each cell by its residuals, in the norm of dissipation; None where it is not
+    wanted [energy/time].
     """
 
     fluid: FluidState
@@ -356,12 +360,14 @@ class Advance:
     stress_power: float | None = None
     stresslet: FloatArray | None = None
     scalar: ScalarAccount | None = None
+    cell_errors: FloatArray | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Fields:
     """Nodal fields for output: ``points`` (N, d), quadratic ``cells`` (M, 6 | 10) in VTK's order, ``velocity`` (N, d),
-    ``pressure`` (N,), a transported ``scalar`` (N,), if there is one, and the ``viscosity`` (N,) where it varies."""
+    ``pressure`` (N,), a transported ``scalar`` (N,), if there is one, the ``viscosity`` (N,) where it varies, and
+    ``cell_errors`` (M,) where they are estimated."""
 
     points: FloatArray
     cells: IntArray
@@ -369,11 +375,12 @@ class Fields:
     pressure: FloatArray
     scalar: FloatArray | None = None
     viscosity: FloatArray | None = None
+    cell_errors: FloatArray | None = None
 
     @property
     def nodal_values(self) -> dict[str, FloatArray]:
         """All that there is at the nodes, by name."""
-        values = {one.name: getattr(self, one.name) for one in fields(Fields) if one.name != "cells"}
+        values = {one.name: getattr(self, one.name) for one in fields(Fields) if not one.name.startswith("cell")}
         return {name: value for name, value in values.items() if value is not None}
 
     def part(self, nodes: IntArray, cells: IntArray) -> Fields:

@@ -9,20 +9,11 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.curl import curl
+from rigidfluid.core.geometry.quadratic_cells import node_gradients
 from rigidfluid.core.model.types import Fields
-
-EDGES = {3: ((0, 1), (1, 2), (0, 2)), 4: ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))}
-"""Which corners each middle node is between, in VTK's order, by the number of corners."""
 
 _AT_ONCE = 20_000
 """Cells whose gradients are in memory at a time."""
-
-
-def node_coordinates(count: int) -> FloatArray:
-    """Barycentric coordinates (b, count) of the nodes of a cell with so many corners."""
-    corners = np.eye(count)
-    first, second = np.transpose(EDGES[count])
-    return np.vstack([corners, 0.5 * (corners[first] + corners[second])])
 
 
 def velocity_gradients(fields: Fields) -> FloatArray:
@@ -31,11 +22,7 @@ def velocity_gradients(fields: Fields) -> FloatArray:
     Each cell is differentiated by itself, and its sides may be curved: u and x are both quadratic in the cell's own
     coordinates. A node has one gradient for each cell around it.
     """
-    slopes = _slopes(fields.points.shape[1])
-    of_points = np.einsum("mbi,nbk->mnik", fields.points[fields.cells], slopes)
-    of_velocity = np.einsum("mbi,nbk->mnik", fields.velocity[fields.cells], slopes)
-    transposed = np.linalg.solve(of_points.swapaxes(2, 3), of_velocity.swapaxes(2, 3))
-    return np.asarray(transposed.swapaxes(2, 3))
+    return node_gradients(fields.points[fields.cells], fields.velocity[fields.cells])
 
 
 def vorticity(fields: Fields) -> FloatArray:
@@ -63,13 +50,3 @@ def _nodal_means(fields: Fields, quantity: Callable[[Fields], FloatArray], shape
         some = replace(fields, cells=fields.cells[start : start + _AT_ONCE])
         np.add.at(total, some.cells, quantity(some))
     return total / around.reshape(-1, *(1 for _ in shape))
-
-
-def _slopes(dimension: int) -> FloatArray:
-    """Derivatives (b, b, d) of the basis at the nodes: node, function, direction from the first corner to another."""
-    corners, nodes = np.eye(dimension + 1), node_coordinates(dimension + 1)
-    first, second = np.transpose(EDGES[dimension + 1])
-    of_corners = (4.0 * nodes - 1.0)[:, :, None] * corners
-    of_middles = 4.0 * (nodes[:, first, None] * corners[second] + nodes[:, second, None] * corners[first])
-    along = np.concatenate([of_corners, of_middles], axis=1)
-    return np.asarray(along[..., 1:] - along[..., :1])

@@ -57,6 +57,7 @@ _STATE: Shapes = {
     },
     **{"hydrodynamic_wrench": _wrench("n"), "contact_wrench": _wrench("n"), "applied": _wrench("n")},
     "stresslet": "ndd",
+    "cell_errors": "M",
     "scalar": {"flux": "r", "value": "r"},
     "motions": {
         **{"pose": _pose("N"), "twist": _twist("N")},
@@ -82,7 +83,7 @@ _SIGNED = ("winding",)
 """Whole numbers that may be below 0, as no others are."""
 
 _POSITIVE = ("state/past/step", "ranks")
-_NOT_NEGATIVE = ("elapsed", "cpu_time", "highest_speed", "seconds", "times")
+_NOT_NEGATIVE = ("elapsed", "cpu_time", "highest_speed", "seconds", "times", "cell_errors")
 """Numbers that are above 0, and those that are no less, as whole ones are anyhow."""
 
 

@@ -34,6 +34,8 @@ class FluidFields(Described, Fields):
         (N,) of a scene with a table ``[scalar]`` [scalar].
     viscosity : FloatArray or None
         (N,) of a fluid whose viscosity varies, at the ``shear_rate`` of each node [mass·length^(2-d)/time].
+    cell_errors : FloatArray or None
+        (M,) squared errors of the cells in the norm of dissipation, with ``mesh.estimate`` [energy/time].
     time : float
         Time of the state [time].
     """
@@ -43,7 +45,7 @@ class FluidFields(Described, Fields):
     @classmethod
     def from_fields(cls, found: Fields, time: float) -> FluidFields:
         """The same arrays with their time."""
-        return cls(**found.nodal_values, cells=found.cells, time=time)
+        return cls(**found.nodal_values, cells=found.cells, cell_errors=found.cell_errors, time=time)
 
     @property
     def vorticity(self) -> FloatArray:

@@ -11,6 +11,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.joints import COORDINATES
+from rigidfluid.core.model.mesh_error import mesh_error
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Mesh, Pose, Twist, Wrench
@@ -42,6 +43,7 @@ def columns(dimension: int, coordinates: Iterable[str] = COORDINATES) -> dict[st
         "probes": ("time", "step", "probe", *position, *velocity, "pressure", "scalar"),
         "driving": ("time", "step", "surface", "flux", "pressure_drop"),
         "stresslets": ("time", "step", "body", *stresslet),
+        "mesh_error": ("time", "step", "error", "dissipation", "relative"),
         "scalar": ("time", "step", *SCALAR_COLUMNS),
         "scalar_fluxes": ("time", "step", "surface", "flux", "value"),
     }
@@ -91,6 +93,7 @@ def records(
         "probes": list(_probe_rows(system, probes, state, stamp)),
         "driving": list(_driving_rows(system, state, stamp)),
         "stresslets": list(_stresslet_rows(system, state, stamp)),
+        "mesh_error": list(_error_rows(state, stamp)),
         "scalar": [] if state.scalar is None else [(*stamp, *(getattr(state.scalar, name) for name in SCALAR_COLUMNS))],
         "scalar_fluxes": list(_scalar_flux_rows(system, state, stamp)),
     }
@@ -183,6 +186,13 @@ def _stresslet_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:
         upper = np.triu_indices(system.dimension)
         for name, stresslet in zip(system.surfaces, state.stresslet, strict=False):
             yield (*stamp, name, *stresslet[upper].tolist())
+
+
+def _error_rows(state: State, stamp: Row) -> Iterator[Row]:
+    """A row where the mesh's error is known."""
+    found = mesh_error(state)
+    if found is not None:
+        yield (*stamp, found.total, found.dissipation, found.relative)
 
 
 def _scalar_flux_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:

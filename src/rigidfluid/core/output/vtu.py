@@ -10,6 +10,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -32,9 +33,10 @@ _HEADER = 8  # bytes that say how long an array is
 
 
 def write_vtu(path: Path, fields: Fields) -> None:
-    """Write quadratic cells with `nodal_arrays` of their nodes."""
+    """Write quadratic cells with `nodal_arrays` of their nodes, and ``cell_errors`` of the cells if they are known."""
     single = {name: values.astype("<f4") for name, values in nodal_arrays(fields).items()}
-    write_grid(path, fields.points, (QUADRATIC[fields.cells.shape[1]], fields.cells), single)
+    of_cells = {} if fields.cell_errors is None else {"cell_errors": fields.cell_errors.astype("<f4")}
+    write_grid(path, fields.points, (QUADRATIC[fields.cells.shape[1]], fields.cells), single, of_cells)
 
 
 def nodal_arrays(fields: Fields) -> dict[str, FloatArray]:
@@ -54,10 +56,14 @@ def nodal_arrays(fields: Fields) -> dict[str, FloatArray]:
 
 
 def write_grid(
-    path: Path, points: FloatArray, cells: tuple[int, IntArray], arrays: Mapping[str, NDArray[np.generic]]
+    path: Path,
+    points: FloatArray,
+    cells: tuple[int, IntArray],
+    arrays: Mapping[str, NDArray[np.generic]],
+    cell_arrays: Mapping[str, NDArray[np.generic]] = MappingProxyType({}),
 ) -> None:
     """Write ``points`` (N, d) with ``arrays`` by name, (N,) or (N, components), and ``cells``, all of one kind: VTK's
-    number of it, and their points (M, b)."""
+    number of it, and their points (M, b), with ``cell_arrays`` (M,) by name."""
     kind, corners = cells
     count, width = corners.shape
     root = ET.Element(
@@ -74,6 +80,8 @@ def write_grid(
     data = ET.SubElement(piece, "PointData")
     for name, values in arrays.items():
         data_array(data, name, values)
+    for name, values in cell_arrays.items():
+        data_array(ET.SubElement(piece, "CellData"), name, values)
     _write(path, root)
 
 
@@ -137,6 +145,7 @@ def read_vtu(path: Path) -> Fields:
                 for name in ("scalar", "viscosity")
                 if name in arrays
             },
+            cell_errors=arrays["cell_errors"].astype(np.float64) if "cell_errors" in arrays else None,
         )
 
 

@@ -145,6 +145,7 @@ def exchanged(successor: Successor, state: State, updater: Updater, clock: Clock
         link=system.joints.unloaded(pose),
         ledger=ledger,
         stresslet=None,
+        cell_errors=None,
         remesh_failed=None,
         estimate=None if state.estimate is None else state.estimate.restarted,
         prescription=successor.prescription,

@@ -87,6 +87,7 @@ def attempt(tools: Tools, state: State, level: int, path: BodyStep, provisional:
         hydrodynamic_wrench=advance.hydrodynamic_wrench,
         stresslet=advance.stresslet,
         scalar=advance.scalar,
+        cell_errors=advance.cell_errors,
         contact_wrench=_mean(path.impulse, end.size),
         motions=_motions(path, step, advance, end.size),
         link=_link_load(system, path, step, advance),

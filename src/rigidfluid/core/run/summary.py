@@ -20,6 +20,7 @@ from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 from rigidfluid.core.output.energy_account import EnergyAccount, energy_account, energy_warnings
 from rigidfluid.core.output.energy_flows import Table
+from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import LEDGER_COLUMNS, count_cells
 from rigidfluid.core.output.verdict import verdict
 from rigidfluid.core.run.cycles import cycles, start_remarks
@@ -89,6 +90,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         **found,
         **_caller_values(state, system),
         **({"population": simulation.population.to_dict()} if simulation.population else {}),
+        **_mesh_errors(simulation.history),
         "remesh_jumps": jumps,
         "remarks": [asdict(remark) for remark in remarks],
         "energy": energy_balance(state.ledger, simulation.history.energy, account),
@@ -101,6 +103,12 @@ def _cycles(simulation: Simulation) -> dict[str, Any]:
     periods = {name: mechanism.period for name, mechanism in simulation.model.mechanisms_by_name.items()}
     repeated = {name: period for name, period in periods.items() if period is not None}
     return {"cycles": cycles(simulation.history, repeated)} if repeated else {}
+
+
+def _mesh_errors(history: History) -> dict[str, Any]:
+    """Latest and largest relative error of the mesh; empty where it was not estimated."""
+    found = history.table("mesh_error", only=["relative"])["relative"]
+    return {"mesh_error": {"latest": _finite(found[-1]), "largest": _finite(found.max())}} if len(found) else {}
 
 
 def _caller_values(state: State, system: System) -> dict[str, Any]:

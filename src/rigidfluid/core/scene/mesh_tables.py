@@ -82,6 +82,9 @@ class MeshTable(Table):
     remesh_every: Positive | None = Field(
         default=None, description="Age of a mesh at which it is always regenerated; never if not given [time]"
     )
+    estimate: bool = Field(
+        default=False, description="Record an estimate of the error that the mesh makes, of each step and in each cell"
+    )
     wake: WakeTable | None = Field(default=None, description="Finer cells behind moving bodies")
     refine: tuple[RefineTable, ...] = Field(default=(), description="Boxes with finer cells")
     field: tuple[SizeFieldTable, ...] = Field(default=(), description="Size fields")

@@ -80,6 +80,11 @@ class Fluid:
     scalar: Scalar | None = None
 
     @property
+    def estimates_errors(self) -> bool:
+        """Tell whether errors of cells are wanted."""
+        return self.mesh.estimate
+
+    @property
     def insertion(self) -> MeshTable:
         """The mesh that bodies can be inserted into."""
         return self.mesh
@@ -157,6 +162,7 @@ class NoFluid:
 
     mesh: ClassVar[None] = None
     inertia: ClassVar[bool] = False
+    estimates_errors: ClassVar[bool] = False
     inert_density: ClassVar[float] = 0.0
     scalar: ClassVar[None] = None
 

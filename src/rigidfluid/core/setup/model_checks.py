@@ -191,6 +191,14 @@ def _check_stresslets(model: Model) -> None:
         raise SceneError("output.stresslets", found, "a backend that gives stresslets", remedy)
 
 
+def _check_estimate(model: Model) -> None:
+    backend = model.fluid.backend.part
+    if model.fluid.estimates_errors and not backend.cell_errors:
+        found = f"true with backend {backend.name!r}"
+        remedy = "Use backend = 'scikit-fem', or leave it out."
+        raise SceneError("mesh.estimate", found, "a backend that gives errors of cells", remedy)
+
+
 def _check_control(body: RigidBody, at: str) -> None:
     """A body moves freely, is fixed, or follows a prescription: one of them."""
     given = [key for key in ("velocity", "angular_velocity") if getattr(body, key) is not None]
@@ -250,6 +258,7 @@ _QUESTIONS: tuple[Callable[[Model], None], ...] = (
     _check_around,
     _check_probes,
     _check_stresslets,
+    _check_estimate,
     check_laws,
     check_pair_forces,
 )

@@ -170,6 +170,8 @@ def _cost(summary: Mapping[str, Any]) -> Iterable[tuple[str, object]]:
         yield key.replace("_", " "), summary[key]
     if summary["failed_remeshes"]:
         yield "latest failed remesh", summary["latest_failed_remesh"]
+    if summary.get("mesh_error", {}).get("latest") is not None:
+        yield "relative error of the mesh, estimated at the end", per_cent(summary["mesh_error"]["latest"])
     yield "wall time [s]", summary["wall_time"]
     for stage, seconds in sorted(summary["wall_time_per_stage"].items(), key=lambda item: -item[1]):
         yield f"of it: {stage} [s]", seconds

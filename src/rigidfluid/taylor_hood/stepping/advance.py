@@ -12,6 +12,7 @@ from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.model.types import Advance, FluidState, Mesh, Step, Twist, Wrench
 from rigidfluid.taylor_hood.elements.container import container_velocity
+from rigidfluid.taylor_hood.stepping.cell_errors import DiscreteFlow, cell_errors
 from rigidfluid.taylor_hood.stepping.momentum import Moving, momentum, past_load
 from rigidfluid.taylor_hood.stepping.newton import solve_newton
 from rigidfluid.taylor_hood.stepping.stresslets import body_volumes, stresslets
@@ -98,7 +99,22 @@ def _measured(equations: Equations, solution: Solution, on_faces: FloatArray, li
         source_power=_source_power(equations, velocity),
         stress_power=stress_power(discretisation, matrix.points, velocity, mean) if begins else None,
         stresslet=_stresslets(equations, solution) if step.stresslets else None,
+        cell_errors=_cell_errors(equations, solution) if step.cell_errors and not step.provisional else None,
     )
+
+
+def _cell_errors(equations: Equations, solution: Solution) -> FloatArray:
+    """Squared errors of the cells (M,) [energy/time]."""
+    matrix, discretisation = equations.matrix, equations.discretisation
+    flow = DiscreteFlow(
+        discretisation.numbering,
+        matrix.node_points,
+        solution.velocity,
+        solution.pressure,
+        matrix.advection,
+        matrix.inertia * (solution.velocity - matrix.frame) - _load_density(equations),
+    )
+    return cell_errors(flow, discretisation.problem.material)
 
 
 def _stresslets(equations: Equations, solution: Solution) -> FloatArray:
@@ -214,20 +230,13 @@ def _expected_twist(fluid: FluidState, step: Step) -> FloatArray:
 def _system(equations: Equations, on_faces: FloatArray) -> CoupledSystem:
     discretisation, matrix = equations.discretisation, equations.matrix
     fluid, step = equations.fluid, equations.step
-    problem, surfaces = discretisation.problem, discretisation.surfaces
-    node_points, prescribed = matrix.node_points, matrix.prescribed
-    _, d1, d2 = step.derivative
+    node_points, prescribed, surfaces = matrix.node_points, matrix.prescribed, discretisation.surfaces
     e0, e1 = step.extrapolation
-    history = d1 * fluid["velocity"] + d2 * fluid["velocity_previous"]
-    density_of_load = -problem.inert_density * history - matrix.inertia * matrix.frame
-    force = _force(equations)
-    if force is not None:
-        density_of_load += force
     expected = _expected_twist(fluid, step)
     twist, moved = prescribed_part(step)
     return CoupledSystem(
         matrix,
-        load=discretisation.mass_times(matrix.points, density_of_load) + on_faces,
+        load=discretisation.mass_times(matrix.points, _load_density(equations)) + on_faces,
         body_load=step.load,
         prescribed=surfaces.prescribed_velocity(step.time, node_points, step.pose.position, flat(twist), moved),
         velocity=extrapolated(fluid, step.extrapolation),
@@ -236,6 +245,16 @@ def _system(equations: Equations, on_faces: FloatArray) -> CoupledSystem:
         pressure_jump=surfaces.pressure_jump(step.time, matrix.points[: discretisation.numbering.vertices]),
         scale=step.load_scale,
     )
+
+
+def _load_density(equations: Equations) -> FloatArray:
+    """Load of the fluid's own equations at the nodes (nodes, d): forces on it, and inertia that is known
+    [force/volume]."""
+    matrix, fluid, (_, d1, d2) = equations.matrix, equations.fluid, equations.step.derivative
+    history = d1 * fluid["velocity"] + d2 * fluid["velocity_previous"]
+    density = -equations.discretisation.problem.inert_density * history - matrix.inertia * matrix.frame
+    force = _force(equations)
+    return np.asarray(density if force is None else density + force)
 
 
 def extrapolated(fluid: FluidState, weights: FloatArray) -> FloatArray:

@@ -12,8 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.tri import TriContourSet
 
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.quadratic_cells import EDGES
 from rigidfluid.core.model.types import Fields
-from rigidfluid.core.output.cell_gradients import EDGES, nodal_shear_rate, nodal_vorticity, vorticity
+from rigidfluid.core.output.cell_gradients import nodal_shear_rate, nodal_vorticity, vorticity
 from rigidfluid.errors import OutputError
 from rigidfluid.post.reports.moment import Moment
 from rigidfluid.post.reports.pictures import flow_picture, streamline_picture, viscosity_picture, whole_mesh_picture

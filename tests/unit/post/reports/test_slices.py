@@ -16,9 +16,9 @@ import rigidfluid
 from rigidfluid.cli import app
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.facets import Facets
+from rigidfluid.core.geometry.quadratic_cells import EDGES
 from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.types import Fields
-from rigidfluid.core.output.cell_gradients import EDGES
 from rigidfluid.post.reports import report
 from rigidfluid.post.reports.bodies import cut, placed_bodies
 from rigidfluid.post.reports.canvas import Canvas, Shell

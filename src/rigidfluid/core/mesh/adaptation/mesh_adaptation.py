@@ -137,6 +137,7 @@ class MeshUpdater:
             fluid=fluid,
             ledger=state.ledger.after_transfer(loss),
             remesh_failed=None,
+            cell_errors=None,
         )
 
     def _is_asked_for(self, state: State, pose: Pose) -> bool:
