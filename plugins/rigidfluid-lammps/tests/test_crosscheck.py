@@ -20,6 +20,7 @@ from rigidfluid_lammps.theirs import build
 RADIUS = 0.1
 WEAK = {"centre": 2e-7, "contact": 2e-8, "normal": 2e-6, "barrier": 1e-4}
 RUBBING = SPRING | {"restitution": 0.7, "friction": 0.05, "tangential_damping": 1000.0}
+STICKING: dict[str, Any] = {"tangential_stiffness": TANGENTIAL_STIFFNESS, "bounded_dashpot": False}
 
 
 def _usable() -> bool:
@@ -113,14 +114,14 @@ def test_springs_along_surfaces_of_balls_that_hardly_turn(
     friction: float, dashpot: dict[str, float], dimension: int
 ) -> None:
     with hard_to_turn():
-        scene = oblique_hit(dimension, friction=friction, tangential_stiffness=TANGENTIAL_STIFFNESS, **dashpot)
+        scene = oblique_hit(dimension, friction=friction, **STICKING, **dashpot)
         assert_agrees(only_row(scene), tolerance=1e-10)
 
 
 @needs_lammps
 @pytest.mark.parametrize("friction", STICKS_AND_SLIPS.values(), ids=STICKS_AND_SLIPS)
 def test_springs_along_a_wall_of_a_ball_that_hardly_turns(friction: float) -> None:
-    contact = RUBBING | {"friction": friction, "tangential_stiffness": TANGENTIAL_STIFFNESS}
+    contact = RUBBING | STICKING | {"friction": friction}
     with hard_to_turn():
         row = only_row(dry_scene(contact, ball([0.3, 0.5], [3.0, -10.0]), end=0.045, step=1e-5))
     assert_agrees(row, tolerance=1e-10)

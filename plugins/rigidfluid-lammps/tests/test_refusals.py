@@ -12,10 +12,11 @@ from rigidfluid_lammps import CrosscheckError, crosscheck
 
 Tables = dict[str, Any]
 NORMAL = {"law": "normal", "range": 0.02, "epsilon": 1e-6}
-ROLLING = {
+STICKING = {
     **{"law": "spring-dashpot", "range": 0.02, "stiffness": 1e5, "friction": 0.5},
-    **{"tangential_stiffness": 1e5, "rolling_friction": 0.1},
+    **{"tangential_stiffness": 1e5},
 }
+ROLLING = STICKING | {"rolling_friction": 0.1}
 FILM = {"law": "lubrication", "range": 0.01, "viscosity": 0.05, "cutoff": 1e-3}
 DIPOLES = {
     **{"law": "dipole", "range": 2.0, "strength": 1e-6, "names": ["one", "other"]},
@@ -41,6 +42,8 @@ REFUSED: dict[str, tuple[str, Tables]] = {
     "a film": ("contact.law: found 'lubrication'", {"contact": FILM}),
     "a film, elsewhere": ("interaction.0.law: found 'lubrication'", {"interaction": [FILM]}),
     "friction of rolling": ("contact.rolling_friction", {"contact": ROLLING}),
+    "a bounded dashpot": ("contact.bounded_dashpot: found true", {"contact": STICKING | {"restitution": 0.5}}),
+    "a bounded dashpot of its own": ("contact.bounded_dashpot", {"contact": STICKING | {"damping": 1.0}}),
     "a damper": ("contact.restitution: found 0.5", {"contact": NORMAL | {"restitution": 0.5}}),
     "a damper, elsewhere": ("interaction.0.restitution", {"interaction": [NORMAL | {"restitution": 0.5}]}),
     "friction": ("contact.friction: found 0.5", {"contact": NORMAL | {"friction": 0.5}}),

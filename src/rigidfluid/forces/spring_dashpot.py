@@ -29,6 +29,7 @@ class SpringDashpotOptions(PartOptions):
     set the dissipation of the dashpot; without either there is none. ``friction``: the coefficient μ.
     ``tangential_damping``: the ratio x of the dashpots along and across the surfaces. ``tangential_stiffness``: of a
     spring along the surfaces, k_t [force/length]; without it friction has no memory, and what rests on a slope creeps.
+    ``bounded_dashpot``: false for LAMMPS' dashpot beside that spring, which creates energy in fast slip.
     ``rolling_friction``, ``twisting_friction``: the coefficients μ_r and μ_o of friction that resists rolling, and the
     turning about the normal; they need the spring.
     """
@@ -53,6 +54,11 @@ class SpringDashpotOptions(PartOptions):
         description="Stiffness k_t of a spring along the surfaces, which holds static friction [force/length]",
     )
 
+    bounded_dashpot: bool = Field(
+        default=True,
+        description="false: beside a spring along the surfaces the dashpot alone may exceed the bound, as in LAMMPS",
+    )
+
     rolling_friction: float = Field(
         default=0.0, ge=0, description="Coefficient of rolling friction μ_r: the largest couple is μ_r R F_n [1]"
     )
@@ -66,6 +72,8 @@ class SpringDashpotOptions(PartOptions):
             raise ValueError("`restitution` or `damping`, not both")
         if self.tangential_stiffness is not None and self.friction == 0.0:
             raise ValueError("`tangential_stiffness` with `friction` above 0 alone")
+        if self.tangential_stiffness is None and not self.bounded_dashpot:
+            raise ValueError("`bounded_dashpot = false` with `tangential_stiffness` alone")
         if self.tangential_stiffness is None and (self.rolling_friction > 0.0 or self.twisting_friction > 0.0):
             raise ValueError("`rolling_friction` and `twisting_friction` with `tangential_stiffness` alone")
         return self
@@ -79,9 +87,11 @@ class SpringDashpotLaw(ForceLaw):
     ends with e times its speed. Contact begins at range: the bodies wear a shell of half that thickness. F_n is not cut
     where it pulls, at the end of an impact: e would not be exact.
 
-    With ``tangential_stiffness`` k_t the force along the surfaces is -(k_t ξ + x γ v_t), at most μ |F_n|: ξ, the
-    displacement of the surfaces past each other, is shortened where they slip until that holds (Cundall & Strack,
-    Géotechnique 29 (1979) 47, doi:10.1680/geot.1979.29.1.47). Its energy is k_t ξ²/2.
+    With ``tangential_stiffness`` k_t the force along the surfaces is that of the dashpot and -k_t ξ, together at most
+    μ |F_n|: ξ, the displacement of the surfaces past each other, is shortened where they slip until that holds (Cundall
+    & Strack, Géotechnique 29 (1979) 47, doi:10.1680/geot.1979.29.1.47). Its energy is k_t ξ²/2. A dashpot x γ v_t
+    without a bound of its own, ``bounded_dashpot = false``, stretches the spring backwards in fast slip, to
+    -(x γ v_t - μ F_n)/k_t, with an energy for which nothing has worked.
 
     With ``rolling_friction`` μ_r or ``twisting_friction`` μ_o it is so for the relative angular velocity w too (Luding,
     Granular Matter 10 (2008) 235, doi:10.1007/s10035-008-0099-x): the couple is
@@ -95,10 +105,11 @@ class SpringDashpotLaw(ForceLaw):
     -----
     Across the surfaces it is LAMMPS' ``pair_style granular`` with ``pair_coeff * * hooke k e damping coeff_restitution
     tangential linear_nohistory x μ``, or ``hooke k γ damping velocity`` with γ given, without ``limit_damping``, for
-    balls of radius r + range/2 and walls range/2 further in; with k_t given it is ``linear_history k_t x μ``. Along the
-    surfaces the formula is the same, and forces act where LAMMPS lets them act between balls, in the middle of the
-    overlap; but LAMMPS takes v_t at the surfaces of the enlarged balls and not at that middle, which differs by ω δ/2,
-    and gives a ball at a wall the arm of its whole radius. https://docs.lammps.org/pair_granular.html
+    balls of radius r + range/2 and walls range/2 further in; with k_t given and ``bounded_dashpot = false``, or x γ
+    zero, it is ``linear_history k_t x μ``. Along the surfaces the formula is the same, and forces act where LAMMPS lets
+    them act between balls, in the middle of the overlap; but LAMMPS takes v_t at the surfaces of the enlarged balls and
+    not at that middle, which differs by ω δ/2, and gives a ball at a wall the arm of its whole radius.
+    https://docs.lammps.org/pair_granular.html
     """
 
     name: ClassVar[str] = "spring-dashpot"
@@ -129,11 +140,7 @@ class SpringDashpotLaw(ForceLaw):
     def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
         """Dashpot and friction on ``body_a``, (m, d) [force]."""
         coefficient, speed, sliding = self._dashpot(contacts, motion)
-        along = self.options.tangential_damping * coefficient
-        if self.sticking:
-            rubbing = along[:, None] * sliding
-        else:
-            rubbing = sliding_friction(along, self._greatest_friction(contacts, coefficient * speed), sliding)
+        rubbing = self._rubbing(coefficient, self._greatest_friction(contacts, coefficient * speed), sliding)
         return np.asarray(-(coefficient * speed)[:, None] * contacts.normal - rubbing)
 
     def pair_formula(self) -> PairFormula | None:
@@ -150,11 +157,11 @@ class SpringDashpotLaw(ForceLaw):
         return np.where(self._overlap(contacts) > 0.0, self.options.tangential_stiffness or 0.0, 0.0)
 
     def held_displacement(self, contacts: Contacts, motion: Motion, displacement: FloatArray) -> FloatArray:
-        """ξ with |k_t ξ + x γ v_t| ≤ μ |F_n|, the nearest along that force, (m, d) [length]."""
+        """ξ with -k_t ξ and the dashpot at most μ |F_n|, the nearest along that force, (m, d) [length]."""
         coefficient, speed, sliding = self._dashpot(contacts, motion)
-        damped = (self.options.tangential_damping * coefficient)[:, None] * sliding
         most = self._greatest_friction(contacts, coefficient * speed)
-        return held_displacement(self.tangential_stiffness(contacts), damped, most, displacement)
+        rubbing = self._rubbing(coefficient, most, sliding)
+        return held_displacement(self.tangential_stiffness(contacts), rubbing, most, displacement)
 
     def couple(self, contacts: Contacts, motion: Motion) -> FloatArray:
         """-x γ R² w of what friction resists, at most what it holds, on ``body_a``, (m, k) [force·length]."""
@@ -163,6 +170,14 @@ class SpringDashpotLaw(ForceLaw):
     def held_turning(self, contacts: Contacts, motion: Motion, turning: FloatArray) -> FloatArray:
         """ζ with |k_t ζ + x γ R w| ≤ μ |F_n| along the normal and across it, with its own μ each, (m, k) [length]."""
         return self._turning.held(contacts, motion, self._bedding(contacts, motion), turning)
+
+    def _rubbing(self, coefficient: FloatArray, most: FloatArray, sliding: FloatArray) -> FloatArray:
+        """Force of the dashpots along the surfaces that slide with this velocity (m, d), beside dashpots across them of
+        this ``coefficient`` (m,) and at most ``most`` (m,) if they are bounded, (m, d) [force]."""
+        along = self.options.tangential_damping * coefficient
+        if self.options.bounded_dashpot:
+            return sliding_friction(along, most, sliding)
+        return np.asarray(along[:, None] * sliding)
 
     def _bedding(self, contacts: Contacts, motion: Motion) -> Bedding:
         coefficient, speed, _ = self._dashpot(contacts, motion)

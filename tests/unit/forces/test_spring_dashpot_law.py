@@ -78,6 +78,17 @@ def test_springs_along_the_surfaces_are_shortened_onto_the_cone() -> None:
     assert not sticking.held_displacement(contact(RANGE), motion, 0.01 * ALONG).any()
 
 
+def test_in_fast_slip_a_bounded_dashpot_leaves_the_spring_relaxed_and_lammps_stretches_it_backwards() -> None:
+    """Both forces are the bound; at the touch the spring of the second would have energy before there was any way."""
+    motion, none = Motion(1e3 * ALONG, np.ones(1)), np.zeros((1, 2))
+    bound, damped = 0.3 * STIFFNESS * (RANGE - GAP), 0.5 * 7.0 * 1e3
+    for options, dashpot in (({}, bound), ({"bounded_dashpot": False}, damped)):
+        slipping = law(damping=7.0, friction=0.3, tangential_damping=0.5, tangential_stiffness=2e3, **options)
+        np.testing.assert_allclose(slipping.damping(contact(GAP), motion), -dashpot * ALONG)
+        held = slipping.held_displacement(contact(GAP), motion, none)
+        np.testing.assert_allclose(held, (bound - dashpot) / 2e3 * ALONG, atol=1e-15)
+
+
 def test_springs_that_resist_turning_are_shortened_across_and_along_the_normal_by_their_own_coefficients() -> None:
     keys = {"friction": 0.3, "tangential_damping": 0.5, "tangential_stiffness": 2e3}
     rolling = law(damping=7.0, rolling_friction=0.2, twisting_friction=0.1, **keys)
@@ -111,6 +122,7 @@ def test_springs_that_resist_turning_are_shortened_across_and_along_the_normal_b
         {"restitution": 0.5, "damping": 1.0},
         {"tangential_stiffness": 0.0, "friction": 0.5},
         {"tangential_stiffness": 1.0},
+        {"bounded_dashpot": False, "friction": 0.5},
     ],
 )
 def test_options_refuse_what_has_no_meaning(keys: dict[str, float]) -> None:

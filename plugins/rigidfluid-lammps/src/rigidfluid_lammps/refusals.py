@@ -69,10 +69,8 @@ def _refuse_walls(system: System) -> None:
 
 def _refuse_law(scene: Scene, system: System) -> None:
     law = system.law
-    if isinstance(law, SpringDashpotLaw) and law.rolling:
-        allowed = "friction of sliding alone: LAMMPS' couples act at the radii of the enlarged balls"
-        subject = f"{system.interactions[0].field}.{law.round_option}"
-        raise CrosscheckError(subject, "friction of rolling or twisting", allowed, "Leave it out.")
+    if isinstance(law, SpringDashpotLaw):
+        _refuse_friction(law, system.interactions[0].field)
     if law is None or isinstance(law, SpringDashpotLaw):
         return
     if all(law is not interaction.law for interaction in system.interactions):
@@ -98,3 +96,16 @@ def _refuse_law(scene: Scene, system: System) -> None:
         "'spring-dashpot', and laws that keep the energy",
         "Choose another law; what LAMMPS lets films resist is another formula.",
     )
+
+
+def _refuse_friction(law: SpringDashpotLaw, field: str) -> None:
+    options = law.options
+    if law.rolling:
+        allowed = "friction of sliding alone: LAMMPS' couples act at the radii of the enlarged balls"
+        subject = f"{field}.{law.round_option}"
+        raise CrosscheckError(subject, "friction of rolling or twisting", allowed, "Leave it out.")
+    damped = options.damping if options.restitution is None else options.restitution < 1.0
+    if law.sticking and options.bounded_dashpot and damped and options.tangential_damping > 0.0:
+        allowed = "false: beside a spring along the surfaces LAMMPS limits the sum with the dashpot alone"
+        remedy = "Set it to false, or tangential_damping to 0."
+        raise CrosscheckError(f"{field}.bounded_dashpot", "true", allowed, remedy)

@@ -78,6 +78,8 @@ def test_a_spring_too_long_for_its_contact_is_shortened_and_not_turned_round():
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_slopes_are_those_of_the_force(dimension):
+    """Of dashpots without a bound of their own; those at their bound have the slopes of secants."""
+    law = SpringDashpotLaw(LAW.options.model_copy(update={"bounded_dashpot": False}), RANGE)
     random, step = np.random.default_rng(6), 1e-7
     middle = contacts_of(dimension, random)
     held = along(middle, random.normal(scale=5e-3, size=middle.normal.shape))
@@ -85,7 +87,7 @@ def test_slopes_are_those_of_the_force(dimension):
     change = along(middle, change)
 
     def rub_at(velocity):
-        return rubbing(LAW, middle, middle, held, Slip(Motion(velocity, np.ones(COUNT)), SIZE, 0.0 * held, False))
+        return rubbing(law, middle, middle, held, Slip(Motion(velocity, np.ones(COUNT)), SIZE, 0.0 * held, False))
 
     slope = (rub_at(velocity + step * change).force - rub_at(velocity - step * change).force) / (2.0 * step * SIZE)
     expected = -np.einsum("mij,mj->mi", rub_at(velocity).stiffness, change)
@@ -121,7 +123,7 @@ def test_springs_that_resist_turning_lose_energy_each_within_its_bound(dimension
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_slopes_of_turning_are_those_of_its_couples(dimension):
-    """Without dashpots, which are held at their bound and have the slopes of secants."""
+    """Without dashpots, as these are held at their bound."""
     law = SpringDashpotLaw(ROLLING.options.model_copy(update={"tangential_damping": 0.0}), RANGE)
     random, step, radius = np.random.default_rng(6), 1e-7, 0.5
     middle = contacts_of(dimension, random)
