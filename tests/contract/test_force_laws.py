@@ -1,3 +1,4 @@
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
@@ -105,6 +106,28 @@ class TestLubrication(ForceLawContract):
     @pytest.fixture(params=[True, False], ids=["sliding", "squeezing"])
     def law(self, request: pytest.FixtureRequest) -> ForceLaw:
         return LubricationLaw(LubricationOptions(viscosity=0.1, cutoff=0.1 * RANGE, sliding=request.param), RANGE)
+
+
+class TestLubricationOfEllipsoids(ForceLawContract):
+    """Beside balls, by curvature tensors."""
+
+    @pytest.fixture
+    def law(self) -> ForceLaw:
+        return LubricationLaw(LubricationOptions(viscosity=0.1, cutoff=0.1 * RANGE, sliding=True), RANGE)
+
+    def make_contacts(self, gap: FloatArray, dimension: int) -> Contacts:
+        contacts = super().make_contacts(gap, dimension)
+        across = np.eye(dimension) - contacts.normal[:, :, None] * contacts.normal[:, None, :]
+        radii = np.column_stack([contacts.radius_a, contacts.radius_b])
+        tensors = across[:, None] / radii[:, :, None, None]
+        shape = np.random.default_rng(1).normal(size=tensors.shape)
+        tensors[::2] += (across[:, None] @ shape @ np.swapaxes(shape, 2, 3) @ across[:, None])[::2]
+        lost = np.where(np.arange(len(gap) * 2) % 2 == 0, np.nan, contacts.radius_a)
+        whole = tensors.sum(axis=1)
+        trace = np.trace(whole, axis1=1, axis2=2)
+        square = 0.5 * (trace**2 - np.sum(whole**2, axis=(1, 2)))
+        radius = 1.0 / trace if dimension == 2 else np.sqrt(2.0 / (trace * np.sqrt(square)))
+        return replace(contacts, radius_a=lost, effective_radius=radius, curvatures=tensors)
 
 
 class Declared(ForceLaw):

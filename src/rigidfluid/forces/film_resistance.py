@@ -32,7 +32,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 
 THICK = 0.2
 """Gap over the effective radius above which the leading terms alone grow no further."""
@@ -53,6 +53,8 @@ class FilmResistance(NamedTuple):
 
     In 3D ``squeezing`` and ``sliding`` are lengths, ``coupling`` length², ``rolling`` and ``twisting`` length³; in 2D
     1, 1, length and length², and nothing twists. ``twisting`` is finite in contact and counted from there: below zero.
+    Where some surface is no ball's, ``sliding``, ``coupling`` and ``rolling`` are tensors (m, d, d), and C has the
+    transpose of ``coupling``.
     """
 
     squeezing: FloatArray
@@ -70,6 +72,25 @@ class FilmResistance(NamedTuple):
         most = np.sqrt(sliding * rolling)
         return FilmResistance(squeezing, sliding, np.clip(more.coupling, -most, most), rolling, twisting)
 
+    def with_tensors(self, rows: BoolArray, other: FilmResistance) -> FilmResistance:
+        """Tensors in place of numbers, those of ``other`` in the ``rows`` (m,)."""
+        columns = [column[:, None, None] * np.eye(3) for column in (self.sliding, self.coupling, self.rolling)]
+        mine = FilmResistance(self.squeezing.copy(), *columns, self.twisting.copy())
+        for column, theirs in zip(mine, other, strict=True):
+            column[rows] = theirs
+        return mine
+
+    def force(self, normal: FloatArray, velocity: FloatArray, rolling: FloatArray) -> FloatArray:
+        """-F/μ (m, d) of v and n × w, ``rolling``, with the ``normal`` n, (m, d) each."""
+        closing = np.sum(velocity * normal, axis=1)[:, None] * normal
+        resisted = self.squeezing[:, None] * closing + _product(self.sliding, velocity - closing)
+        return np.asarray(resisted + _product(self.coupling, rolling))
+
+    def arm_couple(self, velocity: FloatArray, rolling: FloatArray) -> FloatArray:
+        """Vectors (m, d) whose product × n is the couple -C/μ without twisting."""
+        coupling = self.coupling if self.coupling.ndim == 1 else np.swapaxes(self.coupling, 1, 2)
+        return _product(coupling, velocity) + _product(self.rolling, rolling)
+
 
 def film_resistance(gap: FloatArray, radius_a: FloatArray, radius_b: FloatArray, dimension: int) -> FilmResistance:
     """Resistances of a film as thick as ``gap`` between balls of these radii, (m,) each [length]; ``radius_b`` is
@@ -78,6 +99,13 @@ def film_resistance(gap: FloatArray, radius_a: FloatArray, radius_b: FloatArray,
         radius = 1.0 / (1.0 / radius_a + 1.0 / radius_b)
     resistance = _in_the_plane if dimension == 2 else _in_space
     return resistance(gap / radius, radius, 1.0 - 2.0 * radius / radius_a)
+
+
+def _product(resistance: FloatArray, vectors: FloatArray) -> FloatArray:
+    """Numbers (m,) or tensors (m, d, d) times vectors, (m, d)."""
+    if resistance.ndim == 1:
+        return np.asarray(resistance[:, None] * vectors)
+    return np.asarray(np.einsum("mij,mj->mi", resistance, vectors))
 
 
 def leading_squeezing(gap: FloatArray, radius: FloatArray, dimension: int) -> FloatArray:

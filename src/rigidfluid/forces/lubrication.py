@@ -7,7 +7,6 @@ from typing import ClassVar
 import numpy as np
 from pydantic import Field
 
-from rigidfluid.core.contact.laws.balls import require_balls
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.rigid import cross, moment
 from rigidfluid.core.model.contacts import normal_part
@@ -15,6 +14,7 @@ from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Loads, Motion
 from rigidfluid.errors import SceneError
+from rigidfluid.forces.curved_film import curved_resistance, plane_radii
 from rigidfluid.forces.film_resistance import FilmResistance, film_resistance, leading_squeezing
 
 
@@ -22,22 +22,21 @@ class LubricationOptions(PartOptions):
     """Keys of a table with law ``lubrication``.
 
     ``viscosity``: dynamic, of the film, μ [mass·length^(2-d)/time]. ``cutoff``: the gap below which the resistance
-    grows no further [length]. ``sliding``: whether the film resists sliding, rolling and twisting too, between round
-    and flat surfaces; if not, it is the leading term of squeezing. Meshes mostly resolve sliding where they do not
-    squeezing.
+    grows no further [length]. ``sliding``: whether the film resists sliding, rolling and twisting too; if not, it is
+    the leading term of squeezing. Meshes mostly resolve sliding where they do not squeezing.
     """
 
     viscosity: float = Field(gt=0, description="Dynamic viscosity μ of the film [mass·length^(2-d)/time]")
     cutoff: float = Field(gt=0, description="Gap below which the resistance grows no further [length]")
     sliding: bool = Field(
         default=False,
-        description="Whether the film resists sliding, rolling and twisting too, for which surfaces must be round or"
-        " flat; if not, squeezing by its leading term alone",
+        description="Whether the film resists sliding, rolling and twisting too; if not, squeezing by its leading term"
+        " alone",
     )
 
 
 class LubricationLaw(ForceLaw):
-    """F = -μ (N v_n n + S v_t + Q n × w) and the couple C = -μ [(Q v_t + W n × w) × n + T w_n n] on ``body_a``, for
+    """F = -μ (N v_n n + S v_t + Q n × w) and the couple C = -μ [(Qᵀ v_t + W n × w) × n + T w_n n] on ``body_a``, for
     gap < range.
 
     v is the relative velocity of the surfaces half-way between them, v_n along the normal n and v_t across it, w their
@@ -48,12 +47,11 @@ class LubricationLaw(ForceLaw):
     r_a r_b/(r_a + r_b). Twisting is resisted in 3D alone, and finitely in contact: from a gap of R/10 on that grows by
     3 % between equal balls, by 8 % at a flat wall.
 
-    Without ``sliding`` N is its leading term, with an R that ellipsoids have too, by both surfaces' curvatures, and S,
-    Q, W and T are zero. The film takes energy out and holds nothing at rest, so its own force, energy and stiffness are
-    zero.
+    Where a body is an ellipsoid they are the leading terms alone, with an R, and tensors S, Q and W, by both surfaces'
+    curvatures; `curved_film` has them. Without ``sliding`` N is its leading term, and S, Q, W and T are zero. The film
+    takes energy out and holds nothing at rest, so its own force, energy and stiffness are zero.
 
-    A cutoff that is not below range raises SceneError. So do surfaces that are neither round nor flat with ``sliding``,
-    and those without a known curvature.
+    A cutoff that is not below range, and surfaces without a known curvature, raise SceneError.
 
     Notes
     -----
@@ -72,7 +70,7 @@ class LubricationLaw(ForceLaw):
     def __init__(self, options: PartOptions, range: float, loads: Loads | None = None) -> None:
         super().__init__(options, range, loads)
         self.require_below_range("cutoff", self.options.cutoff)
-        self.couples = self.options.sliding
+        self.couples = self.curved = self.options.sliding
         self.round_option = "sliding" if self.options.sliding else ""
 
     def force(self, contacts: Contacts) -> FloatArray:
@@ -89,17 +87,13 @@ class LubricationLaw(ForceLaw):
 
     def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
         """The resistance of the film on ``body_a``, (m, d) [force]."""
-        normal, resistance = contacts.normal, self._resistance(contacts)
-        closing = normal_part(motion.velocity, contacts)[:, None] * normal
-        rolling = -cross(motion.angular_velocity, normal)
-        resisted = resistance.squeezing[:, None] * closing + resistance.sliding[:, None] * (motion.velocity - closing)
-        return np.asarray(-self.options.viscosity * (resisted + resistance.coupling[:, None] * rolling))
+        normal, rolling = contacts.normal, -cross(motion.angular_velocity, contacts.normal)
+        return -self.options.viscosity * self._resistance(contacts).force(normal, motion.velocity, rolling)
 
     def couple(self, contacts: Contacts, motion: Motion) -> FloatArray:
         """The couple of the film on ``body_a``, (m, k) [force·length]."""
         resistance, rolling = self._resistance(contacts), -cross(motion.angular_velocity, contacts.normal)
-        resisted = resistance.coupling[:, None] * motion.velocity + resistance.rolling[:, None] * rolling
-        couple = moment(resisted, contacts.normal)
+        couple = moment(resistance.arm_couple(motion.velocity, rolling), contacts.normal)
         if contacts.normal.shape[1] == 3:
             couple += (resistance.twisting * normal_part(motion.angular_velocity, contacts))[:, None] * contacts.normal
         return -self.options.viscosity * couple
@@ -108,11 +102,15 @@ class LubricationLaw(ForceLaw):
         """Resistances that the mesh does not resolve."""
         dimension = contacts.normal.shape[1]
         film, end = np.clip(contacts.gap, self.options.cutoff, self.range), np.full(len(contacts), self.range)
-        if self.options.sliding:
-            require_balls(contacts, self.name)
-            radii = contacts.radius_a, contacts.radius_b
-            return film_resistance(film, *radii, dimension).beyond(film_resistance(end, *radii, dimension))
         radius = _effective_radius(contacts)
+        if self.options.sliding:
+            radii = plane_radii(contacts) if dimension == 2 else (contacts.radius_a, contacts.radius_b)
+            resistance = film_resistance(film, *radii, dimension).beyond(film_resistance(end, *radii, dimension))
+            curved = np.isnan(radii[0]) | np.isnan(radii[1])
+            if contacts.curvatures is None or not curved.any():
+                return resistance
+            rows = (column[curved] for column in (film, end, contacts.curvatures, radius))
+            return resistance.with_tensors(curved, curved_resistance(*rows))
         squeezing = leading_squeezing(film, radius, dimension) - leading_squeezing(end, radius, dimension)
         none = np.zeros_like(squeezing)
         return FilmResistance(squeezing, none, none, none, none)

@@ -147,12 +147,13 @@ class ForceLawContract:
         contacts = self._contacts_of(law, self.gap_fractions, dimension)
         motion = _motion(contacts)
         rotation = np.linalg.qr(np.random.default_rng(5).normal(size=(dimension, dimension)))[0]
-        shift = np.random.default_rng(6).normal(size=dimension)
+        shift, curvatures = np.random.default_rng(6).normal(size=dimension), contacts.curvatures
         turned = replace(
             contacts,
             point_a=contacts.point_a @ rotation.T + shift,
             point_b=contacts.point_b @ rotation.T + shift,
             normal=contacts.normal @ rotation.T,
+            curvatures=None if curvatures is None else rotation @ curvatures @ rotation.T,
         )
         spin = motion.angular_velocity
         turned_motion = replace(motion, velocity=motion.velocity @ rotation.T, angular_velocity=_turned(spin, rotation))
@@ -178,6 +179,8 @@ class ForceLawContract:
             radius_a=contacts.radius_b,
             radius_b=contacts.radius_a,
             at_wall=contacts.at_wall,
+            effective_radius=contacts.effective_radius,
+            curvatures=None if contacts.curvatures is None else contacts.curvatures[:, ::-1],
         )
         _assert_close(law.force(swapped), -law.force(contacts))
         opposite = Motion(-motion.velocity, motion.mass, -motion.angular_velocity)

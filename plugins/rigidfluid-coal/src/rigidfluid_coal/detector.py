@@ -28,8 +28,8 @@ from rigidfluid_coal.narrow_phase import NarrowPhase
 from rigidfluid_coal.refinement import extent, farthest, refined, separation, shape_matrices
 from rigidfluid_coal.shapes import semi_axes
 
-_COLUMNS = tuple(name for name in Contacts.__slots__ if name != "shift")
-"""Columns of contacts; displacements of images are none of a detector's."""
+_COLUMNS = tuple(name for name in Contacts.__slots__ if name not in ("shift", "curvatures"))
+"""Columns of contacts; displacements of images and curvatures of ellipsoids are none of a detector's."""
 
 
 class CoalDetector(Detector):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.contact.pairs.gap_curvature import with_effective_radii
+from rigidfluid.core.contact.pairs.gap_curvature import with_gap_curvatures
 from rigidfluid.core.contact.path.stretched import stretched
 from rigidfluid.core.contact.path.substep import relative_angular_velocity, relative_motion, relative_velocity
 from rigidfluid.core.coupling.scheme import Scheme
@@ -35,6 +35,6 @@ def film_forces(system: System, contacts: Contacts, pose: Pose, twist: Twist) ->
     films = acting_together([interaction for interaction in system.interactions if interaction.law.film])
     if films is None:
         return np.zeros((len(contacts), system.dimension))
-    curved = with_effective_radii(contacts, system.bodies, system.walls, pose)
+    curved = with_gap_curvatures(contacts, system, pose)
     spin = relative_angular_velocity(contacts, twist, None)
     return films.damping(curved, Motion(relative_velocity(contacts, pose, twist), np.zeros(len(contacts)), spin))

@@ -41,11 +41,13 @@ class ForceLaw(Part):
     range: float
     balls_only: ClassVar[bool] = False
     round_option: str = ""
-    """Key of its table by which it is for round and flat surfaces alone; false or 0, it is for any. Empty without
-    such."""
+    """Key of its table by which it is for round and flat surfaces alone, and for ellipsoids if it is ``curved``; false
+    or 0, it is for any. Empty without such."""
     film: bool = False
     """Tell whether it resists as a film that no mesh resolves: it reads `Contacts.effective_radius`, which balls,
     ellipses and ellipsoids have."""
+    curved: bool = False
+    """Tell whether, as a film, it reads `Contacts.curvatures` too, of bodies that are no balls."""
     conservative: bool = True
     """Tell whether it has an energy; else force, energy and stiffness are zero."""
     dissipative: bool = False

@@ -120,6 +120,11 @@ class System:
         return np.array([body.radius is not None for body in self.bodies], dtype=bool)
 
     @cached_property
+    def has_curved_films(self) -> bool:
+        """Tell whether a law reads the curvatures of bodies that are no balls."""
+        return any(interaction.law.curved for interaction in self.interactions) and not self.balls.all()
+
+    @cached_property
     def bounding_radii(self) -> FloatArray:
         """Distance of the farthest surface point of each body from its centre of mass (n,) [length]."""
         return np.array([body.bounding_radius for body in self.bodies], dtype=float)

@@ -69,7 +69,9 @@ class Contacts:
     squeezes a thin film alike, from the radii if not given, NaN where not known [length]. ``sign`` (m,): 1, which is
     taken if it is not given, or -1 of a contact whose energy and forces are taken away, as others count them twice.
     ``shift`` (m, d): displacement of b's image that is met from b itself, between periodic surfaces; None if there are
-    none, so that all are zero [length]. Points and normals are those of a and of that image.
+    none, so that all are zero [length]. Points and normals are those of a and of that image. ``curvatures`` (m, 2, d,
+    d): curvature tensors of a and of b, zero along the normal, NaN where not known [1/length]; None unless a law asks
+    for them.
     """
 
     body_a: IntArray
@@ -84,6 +86,7 @@ class Contacts:
     effective_radius: FloatArray = field(default_factory=lambda: _FROM_RADII)
     sign: FloatArray = field(default_factory=lambda: _POSITIVE)
     shift: FloatArray | None = None
+    curvatures: FloatArray | None = None
 
     def __post_init__(self) -> None:
         if self.sign is _POSITIVE:

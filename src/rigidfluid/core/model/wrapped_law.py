@@ -17,6 +17,7 @@ class WrappedLaw(ForceLaw):
         self.law = law
         self.loads = law.loads
         self.film = law.film
+        self.curved = law.curved
         self.round_option = law.round_option
         self.acts_in = law.acts_in
         self.conservative = law.conservative

@@ -49,6 +49,7 @@ _STATE: Shapes = {
             ("body_a", "body_b", "gap", "radius_a", "radius_b", "at_wall", "effective_radius", "sign"), "m"
         ),
         **dict.fromkeys(("point_a", "point_b", "normal", "shift"), "md"),
+        "curvatures": "m2dd",
     },
     "springs": {
         **dict.fromkeys(("body_a", "body_b", "stiffness"), "l"),
@@ -73,7 +74,7 @@ _STATE: Shapes = {
 _SHAPES: Shapes = {"state": _STATE, "extremes": {"highest_speed": "n"}, "sizes": "o3"}
 
 _INFINITE = ("gaps", "smallest_gap", "since_start", "error", "with_contacts")
-_UNKNOWN = ("radius_a", "radius_b", "effective_radius", "load_before", "quality")
+_UNKNOWN = ("radius_a", "radius_b", "effective_radius", "curvatures", "load_before", "quality")
 """Names of what may be infinite, and of what may also be no number, as it is not known."""
 
 _OF_BACKENDS = ("memory/", "state/fluid/")

@@ -33,15 +33,23 @@ def check_interactions(
 
 
 def _check_round(interaction: Interaction, bodies: Sequence[Body], walls: Sequence[Wall]) -> None:
-    """Refuse the option of a law for round surfaces where it meets others."""
-    radius = dict(enumerate(body.radius for body in bodies)) | {wall.surface: wall.shape.radius for wall in walls}
-    if any(radius.get(surface) is None for surface in _surfaces_met(interaction, len(bodies), walls)):
-        law, option = interaction.law, interaction.law.round_option
+    """Refuse the option of a law for surfaces of known curvature where it meets others."""
+    law, option = interaction.law, interaction.law.round_option
+    known = {wall.surface for wall in walls if wall.shape.radius is not None}
+    known |= {number for number, body in enumerate(bodies) if _has_known_curvature(body, law)}
+    if not known.issuperset(_surfaces_met(interaction, len(bodies), walls)):
         value = getattr(law, option) if hasattr(law, option) else getattr(law.options, option)
         given, off = ("true", "false") if value is True else (value, "0")
-        found = f"{given} for {bare(law).name!r} with surfaces that are neither round nor flat"
+        others, allowed = "that are neither round nor flat", "balls, and flat or round walls"
+        if law.curved:
+            others, allowed = "of unknown curvature", "balls, ellipses and ellipsoids, and flat or round walls"
+        found = f"{given} for {bare(law).name!r} with surfaces {others}"
         remedy = f"Set it to {off}, or keep the law to other contacts by `between` or `names`."
-        raise SceneError(f"{interaction.field}.{option}", found, "balls, and flat or round walls", remedy)
+        raise SceneError(f"{interaction.field}.{option}", found, allowed, remedy)
+
+
+def _has_known_curvature(body: Body, law: ForceLaw) -> bool:
+    return body.radius is not None or (law.curved and body.semi_axes is not None)
 
 
 def _surfaces_met(interaction: Interaction, bodies: int, walls: Sequence[Wall]) -> tuple[int, ...]:

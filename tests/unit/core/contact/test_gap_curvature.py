@@ -11,6 +11,7 @@ from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.system import build_system
 from rigidfluid.core.contact.pairs.proximity import detect
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts, Pose
 from rigidfluid.errors import SceneError
@@ -123,6 +124,65 @@ def test_ellipses_slow_down_in_a_run_as_their_film_says() -> None:
     assert gap.min() > cutoff
     assert found[-1] < 0.7 * speed
     np.testing.assert_allclose(found, expected, rtol=0, atol=2e-3 * speed)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_curvature_tensors_are_the_second_derivatives_of_the_distances(dimension: int) -> None:
+    axes, radius, room = [0.9, 0.5, 0.7][:dimension], 0.6, [0.0] * (dimension - 2)
+    bodies = ellipsoid(axes, [0.2, 1.4, *room]), ellipsoid(axes[::-1], [0.0, -0.1, *room])
+    ball = {"type": "sphere", "radius": radius, "position": [-1.5, -0.9, *room]}
+    tables = system_tables(*bodies, ball) | {"contact": FILM | {"sliding": True, "range": 20.0}}
+    made = build_system(scene_from_dict(tables))
+    turns = np.random.default_rng(2).normal(size=made.pose.orientation.shape)
+    turns /= 1.0 if dimension == 2 else np.linalg.norm(turns, axis=1, keepdims=True)
+    pose = Pose(made.pose.position, turns)
+    found, step = detect(made, pose, None, 20.0), 1e-4
+    assert set(found.body_b) > {1, 2, 3}
+    assert np.count_nonzero(~found.at_wall) == 3
+    assert found.curvatures is not None
+    rotation = rotation_matrices(pose.orientation)
+    for row in range(len(found)):
+        for side, (body, point) in enumerate(
+            [(found.body_a[row], found.point_a[row]), (found.body_b[row], found.point_b[row])]
+        ):
+            wall = {each.surface: each.shape for each in made.walls}.get(int(body))
+            turn = np.eye(dimension) if wall else rotation[body]
+            own = point if wall else (point - pose.position[body]) @ turn
+            normals = (wall or made.bodies[body]).normal
+            aside = step * np.eye(dimension)
+            tensor = turn @ (normals(own + aside) - normals(own - aside)) @ turn.T / (2.0 * step)
+            np.testing.assert_allclose(found.curvatures[row, side], tensor, rtol=0, atol=1e-5)
+
+
+def test_tensors_are_found_only_where_a_law_asks_and_a_body_is_no_ball() -> None:
+    one, ball = ellipsoid([0.9, 0.5], [0.0, 0.0]), {"type": "sphere", "radius": 0.4, "position": [0.0, 1.0]}
+    for bodies, sliding, expected in (((one, ball), True, True), ((one, ball), False, False), ((ball,), True, False)):
+        made = build_system(scene_from_dict(system_tables(*bodies) | {"contact": FILM | {"sliding": sliding}}))
+        assert (detect(made, made.pose, None, 10.0).curvatures is not None) == expected
+
+
+@pytest.mark.parametrize("stepping", ["substeps", "implicit"])
+def test_ellipsoids_that_slide_past_each_other_keep_momentum_and_the_account(stepping: str) -> None:
+    """Linear and angular momentum, by the film's forces and couples alone; what it takes is the kinetic energy lost."""
+    moving = {"velocity": [1.0, 0.4, -0.2], "angular_velocity": [0.5, -0.8, 0.6]}
+    first = ellipsoid([0.9, 0.5, 0.7], [0.1, 0.0, 1.26]) | moving
+    second = ellipsoid([0.7, 0.8, 0.5], [0.0, 0.0, 0.0])
+    film = FILM | {"sliding": True, "range": 0.2, "cutoff": 0.02, "viscosity": 0.1, "stepping": stepping}
+    scene = system_tables(first, second) | {"contact": film, "time": {"end": 0.03, "step": 3e-3}}
+    made, history = build_system(scene_from_dict(scene)), rigidfluid.run(scene_from_dict(scene))
+    shape = len(history.bodies["x"]) // 2, 2
+    place, velocity, turn, spin = (
+        np.stack([history.bodies[name].reshape(shape) for name in names], axis=2)
+        for names in (("x", "y", "z"), ("vx", "vy", "vz"), ("qw", "qx", "qy", "qz"), ("wx", "wy", "wz"))
+    )
+    frame = rotation_matrices(turn.reshape(-1, 4)).reshape(*shape, 3, 3)
+    own = np.einsum("tbij,bjk,tblk,tbl->tbi", frame, made.inertia, frame, spin)
+    pushed = made.mass[:, None] * velocity
+    for total in (pushed.sum(axis=1), (np.cross(place, pushed) + own).sum(axis=1)):
+        np.testing.assert_allclose(total, np.broadcast_to(total[:1], total.shape), rtol=0, atol=1e-6)
+    assert np.abs(own[-1, 1]).max() > 1e-3
+    assert history.energy["contact_loss"][-1] > 1e-3 * history.energy["kinetic"][0]
+    assert abs(history.summary["energy"]["relative_residual"]) < 1e-4
 
 
 def test_bodies_of_facets_are_refused() -> None:

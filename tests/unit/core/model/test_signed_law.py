@@ -47,7 +47,7 @@ def test_a_law_around_another_declares_all_that_this_one_does() -> None:
         "round_option": "stiffness",
     }
     declared |= {"friction": 0.7, "range": 0.3, "loads": None, "conservative": False, "vanishes_at_range": False}
-    declared |= dict.fromkeys(("film", "dissipative", "sticking", "rolling", "couples"), True)
+    declared |= dict.fromkeys(("film", "curved", "dissipative", "sticking", "rolling", "couples"), True)
     assert declared.keys() == {
         key for key, kind in get_annotations(ForceLaw).items() if not kind.startswith("ClassVar")
     }

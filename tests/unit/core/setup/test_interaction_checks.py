@@ -45,16 +45,37 @@ ELLIPSE = {"name": "ellipse", "type": "ellipsoid", "semi_axes": [0.1, 0.05], "de
         ({"names": ["disk"], "between": "walls"}, False),
     ],
 )
-def test_a_film_that_resists_sliding_is_for_round_surfaces(where: dict, refused: bool) -> None:
+def test_friction_that_resists_rolling_is_for_round_surfaces(where: dict, refused: bool) -> None:
     disk = {"name": "disk", "type": "sphere", "radius": 0.1, "density": 1.0, "position": [0.5, 0.3]}
-    sliding = FILM | where | {"sliding": True}
-    scene = scene_from_dict(dry_tables(disk, ELLIPSE) | {"interaction": [sliding]})
+    rolling = RUBBING | where | {"rolling_friction": 0.1}
+    scene = scene_from_dict(dry_tables(disk, ELLIPSE) | {"interaction": [rolling]})
     if refused:
-        with pytest.raises(SceneError, match=r"Set it to false, or keep the law") as told:
+        with pytest.raises(SceneError, match=r"neither round nor flat.* Set it to 0, or keep the law") as told:
             build_system(scene)
-        assert told.value.subject == "interaction.0.sliding"
-        scene = scene_from_dict(dry_tables(disk, ELLIPSE) | {"interaction": [sliding | {"sliding": False}]})
+        assert told.value.subject == "interaction.0.rolling_friction"
+        scene = scene_from_dict(dry_tables(disk, ELLIPSE) | {"interaction": [rolling | {"rolling_friction": 0.0}]})
     assert build_system(scene).law is not None
+
+
+@pytest.mark.parametrize("sliding", [True, False])
+def test_a_film_that_resists_sliding_is_for_surfaces_of_known_curvature(sliding: bool) -> None:
+    """Ellipses, and walls that are flat or round; the obstacle is neither."""
+    film, names = FILM | {"sliding": sliding}, [["ellipse", "island"], ["ellipse", "bottom"]]
+    island = ELLIPSE | {"name": "island", "position": [1.5, 0.5]}
+    obstacle = {key: island[key] for key in ("name", "type", "semi_axes", "position")}
+    domain = {"type": "channel", "lower": [0.0, 0.0], "upper": [2.0, 1.0], "obstacle": [obstacle]}
+
+    def built(*pairs: list[str]):
+        given = [film | {"names": pair} for pair in pairs]
+        return build_system(scene_from_dict(dry_tables(ELLIPSE, domain=domain) | {"interaction": given}))
+
+    assert built(names[1]).has_curved_films == sliding
+    if not sliding:
+        assert built(*names).law is not None
+        return
+    with pytest.raises(SceneError, match=r"of unknown curvature; .*Set it to false, or keep the law") as told:
+        built(*names)
+    assert told.value.subject == "interaction.0.sliding"
 
 
 RUBBING = {"law": "normal", "range": 0.02, "epsilon": 1e-3, "friction": 0.5}

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from rigidfluid.core.contact.pairs.gap_curvature import with_effective_radii
+from rigidfluid.core.contact.pairs.gap_curvature import with_gap_curvatures
 from rigidfluid.core.contact.pairs.representative_contacts import contacts_at_gaps, pair_contacts, wall_contacts
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.guarded import part_error
@@ -44,9 +44,7 @@ def _some_contact(system: System, interaction: Interaction) -> Contacts:
     hypothetical += [wall_contacts(system, [body] * len(system.walls), system.walls) for body in bodies]
     contacts = joined(hypothetical)
     contacts = select(contacts, np.flatnonzero(interaction.acts_in(contacts))[:1])
-    return (
-        with_effective_radii(contacts, system.bodies, system.walls, system.pose) if interaction.law.film else contacts
-    )
+    return with_gap_curvatures(contacts, system, system.pose)
 
 
 def _check_law(law: ForceLaw, contacts: Contacts) -> None:

@@ -1,9 +1,11 @@
-"""Effective radius of the gap between two smooth surfaces: the one number that its film's resistance depends on."""
+"""Curvature of the gap between two smooth surfaces: its effective radius, on which alone the resistance to squeezing
+depends, and the curvature tensors of both, on which all others do."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,7 +13,22 @@ from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.geometry.wall import Wall, wall_radii
 from rigidfluid.core.mechanics.rigid import rotation_matrices
 from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.types import Contacts, Pose
+
+if TYPE_CHECKING:
+    from rigidfluid.core.model.system import System
+
+
+def with_gap_curvatures(contacts: Contacts, system: System, pose: Pose) -> Contacts:
+    """Contacts with what the laws of films of a system read: R, and where one is ``curved`` both surfaces' tensors."""
+    if not any(interaction.law.film for interaction in system.interactions):
+        return contacts
+    if not system.has_curved_films:
+        return with_effective_radii(contacts, system.bodies, system.walls, pose)
+    tensors, radius = _curvatures(contacts, system.bodies, system.walls, pose), contacts.effective_radius
+    radius = np.where(np.isnan(radius), _effective_radius(tensors.sum(axis=1)), radius)
+    return replace(contacts, effective_radius=radius, curvatures=tensors)
 
 
 def with_effective_radii(contacts: Contacts, bodies: Sequence[Body], walls: Sequence[Wall], pose: Pose) -> Contacts:
@@ -27,13 +44,19 @@ def with_effective_radii(contacts: Contacts, bodies: Sequence[Body], walls: Sequ
     unknown = np.flatnonzero(np.isnan(contacts.effective_radius))
     if len(unknown) == 0:
         return contacts
-    normal, body_b = contacts.normal[unknown], contacts.body_b[unknown]
-    at_wall, curvature = contacts.at_wall[unknown], _body_curvatures(contacts.body_a[unknown], normal, bodies, pose)
-    curvature[at_wall] += _across(normal[at_wall]) / wall_radii(walls, body_b[at_wall])[:, None, None]
-    curvature[~at_wall] += _body_curvatures(body_b[~at_wall], normal[~at_wall], bodies, pose)
     radius = contacts.effective_radius.copy()
-    radius[unknown] = _effective_radius(curvature)
+    radius[unknown] = _effective_radius(_curvatures(select(contacts, unknown), bodies, walls, pose).sum(axis=1))
     return replace(contacts, effective_radius=radius)
+
+
+def _curvatures(contacts: Contacts, bodies: Sequence[Body], walls: Sequence[Wall], pose: Pose) -> FloatArray:
+    """Curvature tensors of a and of b, (m, 2, d, d) [1/length]."""
+    normal, at_wall, body_b = contacts.normal, contacts.at_wall, contacts.body_b
+    tensors = np.empty((len(contacts), 2, *2 * normal.shape[1:]))
+    tensors[:, 0] = _body_curvatures(contacts.body_a, normal, bodies, pose)
+    tensors[at_wall, 1] = _across(normal[at_wall]) / wall_radii(walls, body_b[at_wall])[:, None, None]
+    tensors[~at_wall, 1] = _body_curvatures(body_b[~at_wall], normal[~at_wall], bodies, pose)
+    return tensors
 
 
 def _body_curvatures(body: IntArray, normal: FloatArray, bodies: Sequence[Body], pose: Pose) -> FloatArray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.contact.pairs import broad_phase
-from rigidfluid.core.contact.pairs.gap_curvature import with_effective_radii
+from rigidfluid.core.contact.pairs.gap_curvature import with_gap_curvatures
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.mechanics.rigid import angle_between
 from rigidfluid.core.model.contacts import select
@@ -17,10 +17,7 @@ from rigidfluid.errors import StepRejected
 
 def detect(system: System, pose: Pose, mesh: Mesh | None, reach: float) -> Contacts:
     """Contacts with gap ≤ ``reach`` [length], as the system's detector finds them; balls are round on any mesh."""
-    contacts = system.detection.detect(pose, mesh, reach)
-    if any(interaction.law.film for interaction in system.interactions):
-        return with_effective_radii(contacts, system.bodies, system.walls, pose)
-    return contacts
+    return with_gap_curvatures(system.detection.detect(pose, mesh, reach), system, pose)
 
 
 def detect_contacts_and_gaps(system: System, pose: Pose, mesh: Mesh | None) -> tuple[Contacts, FloatArray]:
