@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from rigidfluid.core.case.boundary import condition_makers
 from rigidfluid.core.case.boundary_table_checks import check_boundary_tables
-from rigidfluid.core.case.contact_table_checks import check_contact_table
+from rigidfluid.core.case.contact_table_checks import check_contact_table, check_numbered_names
 from rigidfluid.core.case.fluid import scene_fluid
 from rigidfluid.core.case.joint_kinds import scene_joints
 from rigidfluid.core.case.laws import scene_laws, scene_pair_forces
@@ -85,6 +85,8 @@ def _kept(this: _ThisScene) -> Model:
 def _model(scene: Scene, registry: Registry) -> Model:
     with all_told() as ask:
         ask(check_contact_table, scene.contact, scene.interaction)
+        names = [table.name for table in scene.body], [table.name for table in scene.source]
+        ask(check_numbered_names, scene.interaction, *names)
         domain = ask(scene_domain, scene.domain, registry, scene.dimension)
         if domain is not None:
             domain = domain.called(_names_used(scene))

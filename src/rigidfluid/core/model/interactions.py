@@ -20,14 +20,14 @@ class Interaction:
     """A law, and the contacts that it acts in.
 
     ``field``: the scene's table that names it. ``between``: contacts at walls, of pairs of bodies, or both; of these it
-    acts in the ones that each of ``surfaces`` takes part in: in all if there is none, with two in that pair alone.
-    ``smallest_gap``: what the scene asks for, None if nothing [length].
+    acts in the ones that one of each group of ``surfaces`` takes part in: in all if there is no group, with two in
+    those between them alone. ``smallest_gap``: what the scene asks for, None if nothing [length].
     """
 
     field: str
     law: ForceLaw
     between: Between
-    surfaces: tuple[int, ...]
+    surfaces: tuple[tuple[int, ...], ...]
     smallest_gap: float | None = None
 
     def acts_in(self, contacts: Contacts) -> BoolArray:
@@ -35,8 +35,11 @@ class Interaction:
         chosen = np.ones(len(contacts), dtype=bool)
         if self.between != "all":
             chosen &= contacts.at_wall == (self.between == "walls")
-        for surface in self.surfaces:
-            chosen &= (contacts.body_a == surface) | (contacts.body_b == surface)
+        a, b = ([np.isin(side, group) for group in self.surfaces] for side in (contacts.body_a, contacts.body_b))
+        if len(self.surfaces) == 1:
+            chosen &= a[0] | b[0]
+        if len(self.surfaces) == 2:
+            chosen &= (a[0] & b[1]) | (a[1] & b[0])
         return chosen
 
 

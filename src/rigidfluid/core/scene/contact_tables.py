@@ -109,5 +109,7 @@ class InteractionTable(OpenTable):
         default="all", description="Contacts at `walls`, of `pairs` of bodies, or both"
     )
     names: Annotated[tuple[str, ...], Field(min_length=1, max_length=2)] | None = Field(
-        default=None, description="Names of bodies or walls: one for all its contacts, two for those between them"
+        default=None,
+        description="Names of bodies or walls: one for all its contacts, two for those between them; `grain*` is any "
+        "of `grain0`, `grain1` and so on of a swarm or a source",
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
+from rigidfluid.core.scene.numbered_names import is_numbered
 from rigidfluid.core.scene.swarm_tables import MOST_BODIES, NotNegative, RandomBodies, RegionTable, SwarmTable
 from rigidfluid.core.scene.table import Positive, Table
 
@@ -37,7 +38,7 @@ class SourceTable(RandomBodies):
 
     def gives(self, name: str) -> bool:
         """Tell whether one of its bodies may have this name."""
-        return name.startswith(self.name) and name[len(self.name) :].isdecimal()
+        return is_numbered(name, self.name)
 
     def swarm(self, number: int) -> SwarmTable:
         """The body of that number as a swarm of one."""

@@ -18,6 +18,7 @@ from rigidfluid.core.model.force_law import Between, ForceLaw
 from rigidfluid.core.model.interactions import Interaction, acting_together
 from rigidfluid.core.model.selected import Selected
 from rigidfluid.core.model.types import Loads
+from rigidfluid.core.scene.numbered_names import ANY, stands_for
 from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.core.setup.checked import AnyRow, Positive, checked
 from rigidfluid.errors import SceneError
@@ -67,7 +68,7 @@ class ContactLaw:
         Contacts at `walls`, of `pairs` of bodies, or `all`.
     names : sequence of str
         Bodies or walls, by either name of a wall: all contacts of one, or that of two with each other; any contacts if
-        empty.
+        empty. `grain*` is any of `grain0`, `grain1` and so on, whether it is there or has yet to enter.
     field : str, optional
         Key of the scene's table that asks for it, for messages; if not given, `contact` of a law alone, and of several
         `interaction.0` and so on.
@@ -106,7 +107,9 @@ class ContactLaw:
             field=self.field,
             law=self._made(replace(loads, smallest_gap=self.aim)),
             between=self.acts_in,
-            surfaces=tuple(surfaces.index(name) for name in self.names),
+            surfaces=tuple(
+                tuple(number for number, name in enumerate(surfaces) if stands_for(named, name)) for named in self.names
+            ),
             smallest_gap=self.smallest_gap,
         )
 
@@ -203,7 +206,7 @@ def check_laws(model: Model) -> None:
 def _check_names(model: Model, law: ContactLaw) -> None:
     bodies, walls = [body.name for body in model.all_bodies], [wall.name for wall in model.walls]
     for number, name in enumerate(law.names):
-        if name not in (*bodies, *walls):
+        if name not in (*bodies, *walls) and not name.endswith(ANY):
             raise _unknown(model, f"{law.field}.names.{number}", name)
     at_walls = any(name in walls for name in law.names)
     pair = len(law.names) == 2
@@ -211,7 +214,7 @@ def _check_names(model: Model, law: ContactLaw) -> None:
     if made_for not in ("all", law.acts_in):
         allowed = f"{made_for}, where {law.law.part.name!r} acts"
         raise SceneError(f"{law.field}.between", law.between, allowed, "Correct it, or choose another law.")
-    if pair and (len(set(law.names)) == 1 or all(name in walls for name in law.names)):
+    if pair and ((len(set(law.names)) == 1 and law.names[0] in bodies) or all(name in walls for name in law.names)):
         raise _nowhere(law, "two different surfaces, one of them a body")
     if (at_walls and law.acts_in == "pairs") or (pair and not at_walls and law.acts_in == "walls"):
         raise _nowhere(law, f"surfaces that meet with between = {law.acts_in!r}")
@@ -222,7 +225,7 @@ def _check_names(model: Model, law: ContactLaw) -> None:
 
 def _check_shapes(model: Model, law: ContactLaw) -> None:
     """Refuse a law that does not know the shapes of the bodies it acts on."""
-    named = [body.shape for body in model.all_bodies if body.name in law.names]
+    named = [body.shape for body in model.all_bodies if any(stands_for(name, body.name) for name in law.names)]
     shapes, part = named if len(law.names) == 2 else model.shapes, law.law.part
     if part.balls_only and any(shape.radius is None for shape in shapes):
         remedy = "Choose another law; `rigidfluid plugins` lists what is installed."

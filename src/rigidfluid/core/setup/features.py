@@ -12,6 +12,7 @@ from rigidfluid.core.contact.laws.friction import Friction
 from rigidfluid.core.contact.laws.restitution import Restitution
 from rigidfluid.core.model.generalised_newtonian import GeneralisedNewtonian
 from rigidfluid.core.model.wrapped_law import bare, layer
+from rigidfluid.described import first_names
 
 if TYPE_CHECKING:
     from rigidfluid.core.fluid.fluid_problem import FluidProblem
@@ -128,8 +129,12 @@ def _law(system: System, interaction: Interaction) -> str:
         text += f"{' and' if restitution else ' with'} a friction of {friction.friction:g}"
     if interaction.between != "all":
         text += {"walls": " at walls", "pairs": " between bodies"}[interaction.between]
-    names = " and ".join(system.surfaces[surface] for surface in interaction.surfaces)
+    names = " and ".join(_group([system.surfaces[surface] for surface in group]) for group in interaction.surfaces)
     return f"{text} ({names})" if names else text
+
+
+def _group(names: list[str]) -> str:
+    return names[0] if len(names) == 1 else f"any of {first_names(names)}" if names else "bodies that may enter"
 
 
 def _sliding(system: System) -> Feature:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import combinations
+from itertools import chain, combinations
 from typing import TYPE_CHECKING
 
 from rigidfluid.core.contact.laws.restitution import Restitution
@@ -54,12 +54,12 @@ def _has_known_curvature(body: Body, law: ForceLaw) -> bool:
 
 def _surfaces_met(interaction: Interaction, bodies: int, walls: Sequence[Wall]) -> tuple[int, ...]:
     """Surfaces in whose contacts an interaction acts, with this number of ``bodies``."""
-    own, every_wall = interaction.surfaces, tuple(wall.surface for wall in walls)
-    if len(own) == 2:
+    own, every_wall = tuple(chain(*interaction.surfaces)), tuple(wall.surface for wall in walls)
+    if len(interaction.surfaces) == 2:
         return own
     if own and own[0] >= bodies:
         return (*range(bodies), *own)
-    if own and interaction.between == "walls":
+    if interaction.surfaces and interaction.between == "walls":
         return own + every_wall
     return tuple(range(bodies)) + (() if interaction.between == "pairs" else every_wall)
 
@@ -110,4 +110,10 @@ def _is_rough(law: ForceLaw) -> bool:
 def _may_meet(one: Interaction, other: Interaction) -> bool:
     """Tell whether there may be contacts in which both act."""
     alike = one.between == other.between or "all" in (one.between, other.between)
-    return alike and len({*one.surfaces, *other.surfaces}) <= 2
+    (first, second), theirs = ((*each.surfaces, None, None)[:2] for each in (one, other))
+    return alike and any(_share(first, a) and _share(second, b) for a, b in (theirs, theirs[::-1]))
+
+
+def _share(group: tuple[int, ...] | None, other: tuple[int, ...] | None) -> bool:
+    """Tell whether two groups of surfaces share one; None is of all."""
+    return group is None or other is None or not set(group).isdisjoint(other)

@@ -213,6 +213,47 @@ def test_a_law_is_not_asked_for_contacts_of_others() -> None:
     assert pairs.force(pair).any()
 
 
+@pytest.mark.parametrize(
+    ("groups", "acts"),
+    [
+        ((), [True, True, True, True]),
+        (((1, 2),), [True, True, False, True]),
+        (((1, 2), (1, 2)), [False, True, False, False]),
+        (((0,), (1, 2)), [True, False, False, False]),
+        (((1, 2), (4,)), [False, False, False, True]),
+        (((), (0,)), [False, False, False, False]),
+    ],
+)
+def test_a_law_acts_between_one_of_each_group(groups: tuple[tuple[int, ...], ...], acts: list[bool]) -> None:
+    law = NormalLaw(NormalOptions(epsilon=1e-6), 0.02)
+    one, body_a, body_b = np.ones(4), np.array([0, 2, 0, 1]), np.array([1, 1, 3, 4])
+    normal = np.tile([1.0, 0.0], (4, 1))
+    contacts = Contacts(body_a, body_b, normal, normal, normal, one, one, one, body_b == 4)
+    assert Interaction("interaction.0", law, "all", groups).acts_in(contacts).tolist() == acts
+
+
+STICKING = {"law": "spring-dashpot", "range": 0.02, "stiffness": 1e4, "friction": 0.3, "tangential_stiffness": 1e3}
+
+
+@pytest.mark.parametrize(
+    ("names", "meet"),
+    [
+        ((["a*"], ["left_disk"]), True),
+        ((["a*", "a*"], ["a*", "left_disk"]), False),
+        ((["a*", "left_disk"], ["left_disk", "a0"]), True),
+        ((["a*", "left_disk"], ["left_disk", "right_disk"]), False),
+    ],
+)
+def test_laws_of_groups_may_meet_where_these_share_bodies(names: tuple[list[str], list[str]], meet: bool) -> None:
+    grains = [LEFT | {"name": f"a{n}", "position": [0.3 + 0.3 * n, 0.15]} for n in range(2)]
+    given = tables(*(STICKING | {"names": each} for each in names), body=[LEFT, RIGHT, *grains])
+    if meet:
+        with pytest.raises(SceneError, match="one such law in a contact"):
+            build_system(scene_from_dict(given))
+    else:
+        build_system(scene_from_dict(given))
+
+
 REFUSED: dict[str, tuple[Tables, str]] = {
     "unknown name": (
         NORMAL | {"names": ["left_dsk"]},

@@ -199,3 +199,34 @@ def test_a_law_leaves_with_the_body_that_it_names() -> None:
     run = Simulation(scene_from_dict(dry_tables(POST, falling, interaction=[law], sink=[SINK], end=0.4)))
     run.go()
     assert list(run.bodies) == ["post"]
+
+
+BOUNCE = {"law": "spring-dashpot", "range": 0.02, "stiffness": 1e4}
+FALLING = {"region": {"type": "box", "lower": [0.7, 0.78], "upper": [0.9, 0.98]}, "times": [0.0]}
+
+
+@pytest.mark.parametrize("names", [["grain*", "post"], ["grain*"]], ids=["pair", "all"])
+def test_a_law_acts_on_the_bodies_of_a_source_that_it_names(names: list[str]) -> None:
+    law = BOUNCE | {"names": names}
+    given = tables(source=[SOURCE | FALLING], sink=[], interaction=[law], end=0.3, step=0.002)
+    post = POST | {"position": [0.8, 0.6]}
+    run = Simulation(scene_from_dict(given | {"body": [post]}))
+    run.go()
+    assert run.history.bodies["vy"].max() == pytest.approx(1.0, abs=0.05)
+
+
+def test_a_law_between_bodies_of_a_source_leaves_others_alone() -> None:
+    law = BOUNCE | {"names": ["grain*", "grain*"]}
+    run = Simulation(scene_from_dict(tables(interaction=[law], sink=[], end=0.5)))
+    run.go(0.1)
+    assert list(run.bodies) == ["post", "grain0"]
+    (interaction,) = run.system.interactions
+    assert interaction.surfaces == ((1,), (1,))
+    run.go()
+    (interaction,) = run.system.interactions
+    assert interaction.surfaces == ((1, 2, 3), (1, 2, 3))
+
+
+def test_names_that_no_source_gives_are_refused() -> None:
+    with pytest.raises(SceneError, match=r"interaction\.0\.names\.0.*'grin\*'.*'grain\*'"):
+        scene_from_dict(tables(interaction=[BOUNCE | {"names": ["grin*"]}]))

@@ -39,7 +39,8 @@ def check_laws(system: System) -> None:
 def _some_contact(system: System, interaction: Interaction) -> Contacts:
     """A contact that an interaction acts in; none where it acts between no two of the first surfaces and its own."""
     count = len(system.bodies)
-    bodies = list(dict.fromkeys([*(own for own in interaction.surfaces if own < count), *range(min(count, 3))]))
+    own = [number for group in interaction.surfaces for number in group[:2] if number < count]
+    bodies = list(dict.fromkeys([*own, *range(min(count, 3))]))
     hypothetical = [pair_contacts(system, bodies)]
     hypothetical += [wall_contacts(system, [body] * len(system.walls), system.walls) for body in bodies]
     contacts = joined(hypothetical)

@@ -36,7 +36,8 @@ def _chosen(system: System, interaction: Interaction) -> Iterator[dict[str, Any]
     bodies = representatives(system)
     if system.walls and (at_walls or between) == AUTO:
         moving = free(system, bodies)
-        wall = next((wall for wall in system.walls if wall.surface in interaction.surfaces), system.walls[0])
+        own = {surface for group in interaction.surfaces for surface in group}
+        wall = next((wall for wall in system.walls if wall.surface in own), system.walls[0])
         contacts = wall_contacts(system, moving, [wall] * len(moving))
         yield from _extremes(system, law, law.loads, select(contacts, interaction.acts_in(contacts)))
     if between == AUTO:
