@@ -32,3 +32,8 @@ class OutputTable(Table):
     every: Positive = Field(description="Time between two written fields and checkpoints [time]")
     probes: tuple[Vector, ...] = Field(default=(), description="Points that record velocity and pressure [length]")
     stresslets: bool = Field(default=False, description="Record the stresslets of the bodies by the fluid")
+    sensitivities: tuple[str, ...] = Field(
+        default=(),
+        description="Keys of the scene, as `fluid.viscosity` or `body.0.density`, by whose values poses, velocities "
+        "and forces of the bodies are differentiated",
+    )
