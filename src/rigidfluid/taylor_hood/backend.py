@@ -128,7 +128,7 @@ class TaylorHoodBackend(FluidBackend):
 
         discretisation = self._discretisation(mesh, step.prescribed)
         matrix = self._matrix(discretisation, fluid, mesh, step)
-        return response(discretisation, matrix, _on_mesh(step, mesh), impulses)
+        return response(discretisation, matrix, on_mesh(step, mesh), impulses)
 
     @final
     def transfer(self, fluid: FluidState, old: Mesh, new: Mesh) -> tuple[FluidState, float]:
@@ -266,7 +266,7 @@ class TaylorHoodBackend(FluidBackend):
         matrix = self._matrix(discretisation, fluid, mesh, step)
         attempt = self._latest_attempt
         guess = attempt[1] if attempt is not None and attempt[0] is fluid else None
-        equations = Equations(discretisation, matrix, fluid, mesh, _on_mesh(step, mesh))
+        equations = Equations(discretisation, matrix, fluid, mesh, on_mesh(step, mesh))
         advanced = advance(equations, tolerance, guess)
         self._latest_attempt = fluid, advanced.fluid
         return advanced
@@ -277,7 +277,7 @@ class TaylorHoodBackend(FluidBackend):
 
         asked = fluid, mesh, step
         if self._latest_matrix is None or any(map(operator.is_not, self._latest_matrix[0], asked)):
-            self._latest_matrix = asked, step_matrix(discretisation, fluid, mesh, _on_mesh(step, mesh))
+            self._latest_matrix = asked, step_matrix(discretisation, fluid, mesh, on_mesh(step, mesh))
         return self._latest_matrix[1]
 
     def _scalar_equations(self, mesh: Mesh) -> ScalarEquations:
@@ -331,6 +331,6 @@ class TaylorHoodBackend(FluidBackend):
         return self._projecting_discretisation(mesh) if self._latest is None else self._latest[1]
 
 
-def _on_mesh(step: Step, mesh: Mesh) -> Step:
+def on_mesh(step: Step, mesh: Mesh) -> Step:
     """The step with the pose of the bodies' images that are on the ``mesh``."""
     return step if mesh.periods is None else replace(step, pose=mesh.images_of(step.pose))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar, Literal, final
 
@@ -12,9 +13,10 @@ from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.fluid.material import Newtonian
 from rigidfluid.core.geometry.answers import refuse_other_rows
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.model.neighbour_step import NeighbourEnd, NeighbourPair, NeighbourStep
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import FluidState, Mesh, SolverCost
-from rigidfluid.taylor_hood.backend import TaylorHoodBackend, TaylorHoodOptions
+from rigidfluid.taylor_hood.backend import TaylorHoodBackend, TaylorHoodOptions, on_mesh
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.linear_solver.predicted_cost import predicted_factors, predicted_run, predicted_unknowns
 from rigidfluid.taylor_hood.linear_solver.solvers import Solvers
@@ -52,6 +54,7 @@ class SparseBackend(TaylorHoodBackend):
     held_fluxes: ClassVar[bool] = True
     stresslets: ClassVar[bool] = True
     cell_errors: ClassVar[bool] = True
+    tangents: ClassVar[bool] = True
 
     options: SparseOptions
 
@@ -92,6 +95,16 @@ class SparseBackend(TaylorHoodBackend):
             self._assembly = self.assembly(numbering)
         self._geometry = mesh.geometry  # says which pressure is fixed, and the normals of faces
         return SparseDiscretisation(self.problem, self._assembly, self._solvers[method], mesh, prescribed)
+
+    @final
+    def neighbours(
+        self, solved: NeighbourStep, found: FluidState, pairs: Sequence[NeighbourPair]
+    ) -> list[tuple[NeighbourEnd, NeighbourEnd]]:
+        from rigidfluid.taylor_hood.stepping.neighbours import neighbours
+
+        discretisation = self._discretisation(solved.mesh, solved.step.prescribed)
+        asked = [(_with_images(plus), _with_images(minus)) for plus, minus in pairs]
+        return neighbours(discretisation, _with_images(solved), found, asked, self.options.tolerance)
 
     @final
     def memory(self) -> FluidState:
@@ -136,3 +149,8 @@ class SparseBackend(TaylorHoodBackend):
             return self.options.solver
         dimension = self.problem.dimension
         return "schur" if dimension == 3 and predicted_factors(unknowns, dimension).seconds > _DEAR else "lu"
+
+
+def _with_images(at: NeighbourStep) -> NeighbourStep:
+    """The same with the poses of images that are on the mesh."""
+    return replace(at, step=on_mesh(at.step, at.mesh))

@@ -16,6 +16,7 @@ from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.guarded import gives
 from rigidfluid.core.model import backend_answers as backends
 from rigidfluid.core.model.extension import Extension, FactorisedExtension
+from rigidfluid.core.model.neighbour_step import NeighbourEnd, NeighbourPair, NeighbourStep
 from rigidfluid.core.model.part import Part, PartOptions
 from rigidfluid.core.model.ranks import ALONE, Ranks
 from rigidfluid.core.model.types import Advance, Fields, FluidState, Mesh, Pose, Response, SolverCost, Step, Twist
@@ -61,6 +62,8 @@ class FluidBackend(Part):
     """Tell whether it gives stresslets of bodies to a `Step` that wants them."""
     cell_errors: ClassVar[bool] = False
     """Tell whether it gives errors of cells to a `Step` that wants them."""
+    tangents: ClassVar[bool] = False
+    """Tell whether it gives `neighbours` of a step, by which sensitivities are found."""
     state_format: ClassVar[str | None] = None
     """Name of the format of its state. Backends of one format resume each other's runs, and by `joined` and `cut` those
     of other numbers of ranks; None where neither can be."""
@@ -103,6 +106,17 @@ class FluidBackend(Part):
     @gives(backends.advance)
     def advance(self, fluid: FluidState, mesh: Mesh, step: Step) -> Advance:
         """Take one step from ``fluid`` on ``mesh`` to ``step.points``; raises StepRejected where it cannot."""
+
+    @gives(anything)
+    def neighbours(
+        self, solved: NeighbourStep, found: FluidState, pairs: Sequence[NeighbourPair]
+    ) -> list[tuple[NeighbourEnd, NeighbourEnd]]:
+        """Ends of ``pairs`` of steps on both sides of one that was ``solved``, whose state at the end was ``found``:
+        to first order in their difference, by one linear solution for each pair; asked where there are `tangents`.
+
+        Later steps are as if it had not been asked. Raises StepRejected.
+        """
+        raise NotImplementedError
 
     @abstractmethod
     @gives(backends.response)

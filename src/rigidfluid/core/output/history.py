@@ -89,7 +89,7 @@ class History(Described):
         ----------
         name : str
             ``bodies``, ``contacts``, ``joints``, ``energy``, ``steps``, ``probes``, ``driving``, ``stresslets``,
-            ``mesh_error``, ``scalar`` or ``scalar_fluxes``.
+            ``mesh_error``, ``sensitivities``, ``scalar`` or ``scalar_fluxes``.
         only : iterable of str, optional
             The columns that are wanted; all if not given. A folder that an earlier version has written has all that it
             knew.
@@ -200,6 +200,11 @@ class History(Described):
     def mesh_error(self) -> dict[str, NDArray[Any]]:
         """The table of mesh_error.csv: a row per accepted step, with ``mesh.estimate``."""
         return self.table("mesh_error")
+
+    @property
+    def sensitivities(self) -> dict[str, NDArray[Any]]:
+        """The table of sensitivities.csv: a row per key in ``output.sensitivities``, body and accepted step."""
+        return self.table("sensitivities")
 
     @property
     def scalar(self) -> dict[str, NDArray[Any]]:

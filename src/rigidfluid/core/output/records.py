@@ -44,6 +44,7 @@ def columns(dimension: int, coordinates: Iterable[str] = COORDINATES) -> dict[st
         "driving": ("time", "step", "surface", "flux", "pressure_drop"),
         "stresslets": ("time", "step", "body", *stresslet),
         "mesh_error": ("time", "step", "error", "dissipation", "relative"),
+        "sensitivities": ("time", "step", "parameter", "body", *_derivative_columns(dimension)),
         "scalar": ("time", "step", *SCALAR_COLUMNS),
         "scalar_fluxes": ("time", "step", "surface", "flux", "value"),
     }
@@ -63,6 +64,14 @@ def quantity_columns(dimension: int) -> dict[str, tuple[str, ...]]:
         "contact_force": _components("cf", dimension),
         "contact_torque": ("ct",) if two else _components("ct", dimension),
     }
+
+
+def _derivative_columns(dimension: int) -> Iterator[str]:
+    """Columns of derivatives of poses, velocities and forces; in 3D those of the orientation are a rotation vector."""
+    quantities = quantity_columns(dimension)
+    if dimension == 3:
+        quantities["orientation"] = _components("r", 3)
+    return chain(*quantities.values())
 
 
 def _components(name: str, dimension: int) -> tuple[str, ...]:
@@ -94,6 +103,7 @@ def records(
         "driving": list(_driving_rows(system, state, stamp)),
         "stresslets": list(_stresslet_rows(system, state, stamp)),
         "mesh_error": list(_error_rows(state, stamp)),
+        "sensitivities": [],
         "scalar": [] if state.scalar is None else [(*stamp, *(getattr(state.scalar, name) for name in SCALAR_COLUMNS))],
         "scalar_fluxes": list(_scalar_flux_rows(system, state, stamp)),
     }

@@ -24,6 +24,7 @@ TABLES = {
     "driving": "flux and drop of pressure of each pair of periodic surfaces",
     "stresslets": "a row per body with `output.stresslets`",
     "mesh_error": "the error that the mesh makes, with `mesh.estimate`",
+    "sensitivities": "derivatives by the keys in `output.sensitivities`, a row per key and body",
     "scalar": "content, balance and extremes of the scalar of a table `[scalar]`",
     "scalar_fluxes": "its flux into the fluid and mean value on each body and each surface of the domain",
 }

@@ -7,7 +7,7 @@ from dataclasses import replace
 from rigidfluid.core.contact.laws.spot_check import spot_check
 from rigidfluid.core.contact.pairs.proximity import detect_contacts_and_gaps
 from rigidfluid.core.mechanics.wrenches import nothing
-from rigidfluid.core.mesh.adaptation.updater import Updater
+from rigidfluid.core.mesh.adaptation.updater import FirstMesh
 from rigidfluid.core.model.energy import Ledger, Power
 from rigidfluid.core.model.state import MotionState, State
 from rigidfluid.core.model.system import System
@@ -20,7 +20,7 @@ START_LEVEL = 6
 start at once at most half of the time since."""
 
 
-def initial_state(system: System, mesh_updater: Updater, clock: Clock, starts_short: bool = False) -> State:
+def initial_state(system: System, mesh_updater: FirstMesh, clock: Clock, starts_short: bool = False) -> State:
     """The state at time zero, on its first mesh; raises MeshError where there is none,
     PluginError where a detector or law is not what it should be."""
     zero = nothing(system.pose)

@@ -12,6 +12,7 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.boundary_layer import CELLS_WANTED
 from rigidfluid.core.mesh.generation.layer_cells import FEWEST_CELLS, thinnest_layer
 from rigidfluid.core.model.system import System
+from rigidfluid.core.output.history import History
 from rigidfluid.core.setup.model import Model
 
 
@@ -59,3 +60,13 @@ def source_remarks(model: Model, population: Population, time: float) -> list[Re
         for name, count in waiting.items()
         if count
     ]
+
+
+def sensitivity_remarks(ended: str | None, history: History) -> list[Remark]:
+    """Note that derivatives have ``ended`` before the run, and when."""
+    if ended is None:
+        return []
+    times = history.sensitivities["time"]
+    until = f"end at time {times[-1]:.6g}" if len(times) else "have no rows"
+    remedy = "Differentiate from there on by runs with two values, or keep the mesh and bodies apart for longer."
+    return [Remark("note", f"sensitivities {until}, as {ended}", remedy)]

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, fields, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -56,6 +57,7 @@ from rigidfluid.core.run.resumption import earlier_of, recall_memory
 from rigidfluid.core.run.run_timer import RunTimer
 from rigidfluid.core.run.saved_run import SavedRun, require_saved
 from rigidfluid.core.run.schedule import Schedule
+from rigidfluid.core.run.step import Tools
 from rigidfluid.core.run.stepper import Counts, Stepper
 from rigidfluid.core.run.stopwatch import Stopwatch
 from rigidfluid.core.run.summary import summarise
@@ -66,6 +68,9 @@ from rigidfluid.core.setup.named_files import file_digests
 from rigidfluid.core.setup.prescribed import PrescribedMotion
 from rigidfluid.described import Described, first_names
 from rigidfluid.errors import ArgumentError, MeshError, OutputError, SceneError, StepError
+
+if TYPE_CHECKING:
+    from rigidfluid.core.run.sensitivities import Sensitivities
 
 
 class Simulation(Described):
@@ -117,6 +122,7 @@ class Simulation(Described):
         self._times: tuple[float, ...] = ()
         self._writer: Writer | None = None
         self._observers = Observers()
+        self._sensitivities: Sensitivities | None = None
         try:
             with told_memory(), self._threads():
                 if earlier is None:
@@ -175,6 +181,13 @@ class Simulation(Described):
         return self.stepper.counts
 
     @property
+    def sensitivities_ended(self) -> str | None:
+        """Why there are no derivatives from some time on, None where there are, or none are wanted."""
+        if self._sensitivities is not None:
+            return self._sensitivities.ended
+        return "the run was resumed" if self.model.output.sensitivities else None
+
+    @property
     def bodies(self) -> dict[str, BodyNow]:
         """All bodies by name, as they are now, and after them the mechanisms as wholes."""
         return bodies_now(self.system, self.state)
@@ -214,7 +227,10 @@ class Simulation(Described):
             raise StepError("a step", f"one after the end, {self.time:g}", f"steps until {self.clock.end:g}", remedy)
         self._exchange_due()
         with told_memory(), self._threads():
-            self.state = self.stepper.after(self.state)
+            before, self.state = self.state, self.stepper.after(self.state)
+            if self._sensitivities is not None:
+                with self.watch("sensitivities"):
+                    self._sensitivities.follow(self.system, before, self.state)
         self._record()
         self._observers.call(self)
         return self.state
@@ -443,12 +459,20 @@ class Simulation(Described):
             self.state = initial_state(
                 self.system, self.mesh_updater, self.clock, self.model.time.tolerance is not None
             )
+        if self.model.output.sensitivities:
+            self._sensitivities = self._sensitivities_from_now()
         if self._ranks.bcast(out is not None and has_checkpoint(out)):
             self._rehearse()
         self._writer = None if out is None else self._writer_to(out, None)
         self._record()
         self._output()
         self.observe(Simulation._output, self.model.output.every)
+
+    def _sensitivities_from_now(self) -> Sensitivities:
+        from rigidfluid.core.run.sensitivities import Sensitivities  # few scenes have any
+
+        tools = Tools(self.system, self.stepper.scheme, self.clock, self.mesh_updater, self.watch)
+        return Sensitivities(self.model.document, tools, self.state, self.model.output.sensitivities)
 
     def _rehearse(self) -> None:
         """Try the first step before an earlier run's results are replaced; a scene that cannot start leaves them."""
@@ -479,6 +503,8 @@ class Simulation(Described):
             cost = StepCost(self.clock.size(level), self.counts.remeshes, quality)
         forces = contact_forces(self.system, self.stepper.scheme, self.state, self.time)
         now = records(self.system, self._probes, self.state, self.time, cost, forces)
+        if self._sensitivities is not None:
+            now["sensitivities"] = list(self._sensitivities.rows((self.time, self.state.count)))
         self.history.extend(now)
         self.extremes = self.extremes.after(self.state.gaps, self.state.twist)
         if self._writer is not None:

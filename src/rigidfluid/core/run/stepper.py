@@ -24,6 +24,7 @@ from rigidfluid.core.run.corners import level_to_corner, restarted
 from rigidfluid.core.run.energy_causes import with_cause
 from rigidfluid.core.run.error_estimate import estimate_error
 from rigidfluid.core.run.impacts import is_unresolved, level_after_impact
+from rigidfluid.core.run.prescribed_path import with_prescribed
 from rigidfluid.core.run.process import give_back_memory
 from rigidfluid.core.run.step import Tools, attempt
 from rigidfluid.core.run.step_controller import StepController
@@ -151,7 +152,7 @@ class Stepper:
                 raise _too_fast()
             if number == 0 and scheme.repeats_start(state, path):
                 again = first_step_again(self.system, state, candidate.motions.twist, self._end(state, level), size)
-                path = self._with_prescribed(again, state, level)
+                path = with_prescribed(self.system, again, self._end(state, level))
                 continue
             with self._watch("response"):
                 candidate, agree = scheme.converge(state, candidate, path, step)
@@ -171,20 +172,7 @@ class Stepper:
                 coupling = self.scheme.expect(state, time, size)
         with self._watch("contact"):
             path = self.scheme.follow(state, time, size, coupling)
-        return self._with_prescribed(path, state, level)
-
-    def _with_prescribed(self, path: BodyStep, state: State, level: int) -> BodyStep:
-        """The path with poses at its end evaluated, not integrated: of prescribed motions, and of all bodies; and
-        with joints that fit."""
-        end, motions = self._end(state, level), path.motions.pose
-        prescribed = self.system.motions.prescribed[:, None]
-        if prescribed.any():
-            pose = self.system.prescribed_pose(end)
-            position = np.where(prescribed, pose.position, motions.position)
-            motions = Pose(position, np.where(prescribed, pose.orientation, motions.orientation))
-        motions = self.system.joints.closed(motions, end)
-        bodies = self.system.motions.poses(motions, end)
-        return replace(path, pose=bodies, motions=replace(path.motions, pose=motions))
+        return with_prescribed(self.system, path, self._end(state, level))
 
     def _end(self, state: State, level: int) -> float:
         """Time when a step of this level ends [time]."""

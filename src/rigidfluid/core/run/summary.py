@@ -25,7 +25,7 @@ from rigidfluid.core.output.records import LEDGER_COLUMNS, count_cells
 from rigidfluid.core.output.verdict import verdict
 from rigidfluid.core.run.cycles import cycles, start_remarks
 from rigidfluid.core.run.process import peak_memory
-from rigidfluid.core.run.remarks import layer_remarks, source_remarks
+from rigidfluid.core.run.remarks import layer_remarks, sensitivity_remarks, source_remarks
 from rigidfluid.core.run.remesh_jumps import jump_remarks, remesh_jumps
 from rigidfluid.core.run.turn_remarks import turn_remarks
 from rigidfluid.core.setup.model import Model
@@ -58,6 +58,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
     length = max(radii.values(), default=0.0)
     remarks = layer_remarks(system, extremes.highest_speed, None if mesh is None else mesh.size_body)
     remarks += source_remarks(simulation.model, simulation.population, simulation.time)
+    remarks += sensitivity_remarks(simulation.sensitivities_ended, simulation.history)
     inertia = problem is not None and problem.inertia
     remarks += start_remarks(found.get("cycles", {}), inertia, length)
     jumps = remesh_jumps(simulation.history, radii) if simulation.counts.remeshes else {}

@@ -34,3 +34,8 @@ class OutputTable(Table):
         default=(), description="Points that record velocity, pressure and scalar [length]"
     )
     stresslets: bool = Field(default=False, description="Record the stresslets of the bodies by the fluid")
+    sensitivities: tuple[str, ...] = Field(
+        default=(),
+        description="Keys of the scene, as `fluid.viscosity` or `body.0.density`, by whose values poses, velocities "
+        "and forces of the bodies are differentiated",
+    )

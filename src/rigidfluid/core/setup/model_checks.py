@@ -199,6 +199,28 @@ def _check_estimate(model: Model) -> None:
         raise SceneError("mesh.estimate", found, "a backend that gives errors of cells", remedy)
 
 
+def _check_sensitivities(model: Model) -> None:
+    """Refuse what no derivatives are known for."""
+    wanted, found = model.output.sensitivities, _without_derivatives(model)
+    if wanted and found:
+        remedy = "Differentiate by runs with two values, or leave it out."
+        raise SceneError("output.sensitivities", found, "a scene with derivatives", remedy)
+
+
+def _without_derivatives(model: Model) -> str | None:
+    """The first thing that no derivatives are known for, None where a model has none."""
+    backend, wet = model.fluid.backend.part, model.wet
+    held_flux = any(condition.held_flux is not None for condition in model.conditions)
+    found = {
+        f"backend {backend.name!r}": wet and not backend.tangents,
+        "a transported scalar": model.fluid.scalar,
+        "a flux that is held": held_flux,
+        "a window": model.window,
+        "a source or a sink": model.source_tables or model.sink_tables,
+    }
+    return next((name for name, is_there in found.items() if is_there), None)
+
+
 def _check_control(body: RigidBody, at: str) -> None:
     """A body moves freely, is fixed, or follows a prescription: one of them."""
     given = [key for key in ("velocity", "angular_velocity") if getattr(body, key) is not None]
@@ -259,6 +281,7 @@ _QUESTIONS: tuple[Callable[[Model], None], ...] = (
     _check_probes,
     _check_stresslets,
     _check_estimate,
+    _check_sensitivities,
     check_laws,
     check_pair_forces,
 )

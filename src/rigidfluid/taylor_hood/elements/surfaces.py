@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -80,6 +82,14 @@ class Surfaces:
         )
         self.velocity_free[self.images] = False
         self.enclosed = not any(condition.is_open for condition in conditions)
+
+    def under(self, conditions: Sequence[BoundaryCondition]) -> Surfaces:
+        """The same surfaces under ``conditions`` of the same kinds with other values."""
+        other = copy(self)
+        other.__dict__.pop("first_faces", None)  # those of its own conditions
+        of_surface = {condition.surface: condition for condition in conditions}
+        other.faces = [replace(face, condition=of_surface[face.condition.surface]) for face in self.faces]
+        return other
 
     def prescribed_velocity(
         self, time: float, node_points: FloatArray, position: FloatArray, twist: FloatArray, prescribed: BoolArray

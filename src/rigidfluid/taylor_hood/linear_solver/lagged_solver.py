@@ -183,6 +183,29 @@ class LaggedSolver(ABC, Generic[Matrix]):
         return found
 
     @final
+    def solve_aside(self, operator: Operator[Matrix], right_sides: FloatArray, tolerance: float) -> FloatArray:
+        """The same with the preconditioner at hand, where it serves: the steps go on as if it had not been asked."""
+        if not self._is_made:
+            self._renew(operator.build)
+        found = np.zeros_like(right_sides)
+        for column in range(right_sides.shape[1]):
+            right_side = right_sides[:, column]
+            enough = tolerance * self.norm(right_side)
+            if enough > 0.0:
+                found[:, column] = self._solved_aside(operator, right_side, enough)
+        return found
+
+    def _solved_aside(self, operator: Operator[Matrix], right_side: FloatArray, enough: float) -> FloatArray:
+        found, _, converged = self.iterate(operator.apply, right_side, enough, self.most)
+        if not converged:
+            self._renew(operator.build)
+            found, _, converged = self.iterate(operator.apply, right_side, enough, self.most)
+        if not converged:
+            shown = f"sensitivities that do not converge to {enough:.1e} in {self.most} iterations"
+            raise StepRejected("fluid.tolerance", shown, "converging ones", "Loosen fluid.tolerance.")
+        return found
+
+    @final
     def norm(self, vector: FloatArray) -> float:
         """Euclidean norm of a distributed vector, over all processes."""
         return float(np.sqrt(self._ranks.sum(vector @ vector)))

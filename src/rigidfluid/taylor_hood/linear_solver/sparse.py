@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from scipy import sparse
@@ -89,6 +89,61 @@ class _Assembled:
         result[self.twists] += moved.reshape(x[self.twists].shape)
         return result
 
+    def moved(self, solution: Solution, change: FloatArray) -> Solution:
+        """A ``solution`` with its unknowns moved by a ``change`` (unknowns,)."""
+        everything, twist = self.constraint.matrix @ change, solution.twist.copy()
+        twist[~self.coupled.prescribed] += change[self.twists].reshape(-1, twist.shape[1])
+        shape, size = solution.velocity.shape, solution.velocity.size
+        return replace(
+            solution,
+            velocity=solution.velocity + everything[:size].reshape(shape),
+            pressure=solution.pressure + everything[size:],
+            twist=twist,
+            reaction=solution.reaction + (self.system_matrix @ everything)[:size].reshape(shape),
+        )
+
+
+class _Beside(NamedTuple):
+    """A system's ``residual`` (unknowns,) of unknowns that may not solve it, and these as its ``solution``."""
+
+    residual: FloatArray
+    solution: Solution
+
+
+@dataclass(frozen=True, eq=False)
+class _Posed:
+    """A ``system`` with its ``assembled`` matrix: what is ``given`` of all unknowns of K, their ``load``, and the
+    ``right_side`` (unknowns,). It is asked while P is placed for it."""
+
+    system: CoupledSystem
+    assembled: _Assembled
+    given: FloatArray
+    load: FloatArray
+    right_side: FloatArray
+
+    def residual(self, x: FloatArray) -> FloatArray:
+        """Right side less the matrix times x (unknowns,)."""
+        return np.asarray(self.right_side - self.assembled.apply(x))
+
+    def beside(self, x: FloatArray) -> _Beside:
+        """The residual of x (unknowns,), and x as a solution."""
+        return _Beside(self.residual(x), self.solution(x))
+
+    def solution(self, x: FloatArray) -> Solution:
+        """Velocity, pressure, twists and reaction of the unknowns x (unknowns,)."""
+        s, assembled = self.system, self.assembled
+        everything = assembled.constraint.matrix @ x + self.given
+        twist = s.twist.copy()
+        twist[~s.matrix.prescribed] = x[assembled.twists].reshape(-1, twist.shape[1])
+        velocity, pressure = np.split(everything, [s.prescribed.size])
+        reaction = (assembled.system_matrix @ everything - self.load)[: s.prescribed.size]
+        jump_load = None
+        if s.pressure_jump.any():
+            of_jump = assembled.system_matrix @ np.concatenate([np.zeros(s.prescribed.size), s.pressure_jump])
+            jump_load = -of_jump[: s.prescribed.size].reshape(s.prescribed.shape)
+        velocity = velocity.reshape(s.prescribed.shape) + s.matrix.frame
+        return Solution(velocity, pressure, twist, reaction.reshape(s.prescribed.shape), jump_load)
+
 
 class SparseDiscretisation:
     """Pᵀ K P, solved by a Krylov iteration.
@@ -151,32 +206,38 @@ class SparseDiscretisation:
 
     def solve(self, system: CoupledSystem, tolerance: float) -> Solution:
         """Solve Pᵀ(K(P x + given - frame) - load) + (M x - L on the twists) = 0 from the guess onwards."""
-        s, constraint, free = system, self._constraint, ~system.matrix.prescribed
-        assembled, solver = self._assembled(s.matrix), self._solvers.select(s.matrix.viscosity)
-        zero = np.zeros(self.numbering.vertices)
-        given = np.concatenate([(s.prescribed - s.matrix.frame).ravel(), s.pressure_jump])
-        load = np.concatenate([s.load.ravel(), zero])
-        known = assembled.system_matrix @ given if given.any() else 0.0
-        right_side = constraint.transposed @ (load - known)
-        right_side[assembled.twists] += s.body_load[free].ravel()
-        guess = self._guess(s, assembled.twists)
-        scale = max(solver.norm(right_side), s.scale)
+        solver = self._solvers.select(system.matrix.viscosity)
+        posed = self._posed(system, self._assembled(system.matrix))
+        guess = self._guess(system, posed.assembled.twists)
+        scale = max(solver.norm(posed.right_side), system.scale)
         guess *= scale > 0.0  # what nothing drives is exactly at rest, and no residual could be small beside zero
-        residual = right_side - assembled.apply(guess)
-        enough, outdated = tolerance * scale, self._is_outdated(s.matrix)
-        correction, _ = solver.solve(self._operator(assembled), residual, enough, outdated, s.again)
-        reduced = guess + correction
-        everything = constraint.matrix @ reduced + given
-        twist = s.twist.copy()
-        twist[free] = reduced[assembled.twists].reshape(-1, twist.shape[1])
-        velocity, pressure = np.split(everything, [s.prescribed.size])
-        reaction = (assembled.system_matrix @ everything - load)[: s.prescribed.size]
-        jump_load = None
-        if s.pressure_jump.any():
-            of_jump = assembled.system_matrix @ np.concatenate([np.zeros(s.prescribed.size), s.pressure_jump])
-            jump_load = -of_jump[: s.prescribed.size].reshape(s.prescribed.shape)
-        velocity = velocity.reshape(s.prescribed.shape) + s.matrix.frame
-        return Solution(velocity, pressure, twist, reaction.reshape(s.prescribed.shape), jump_load)
+        enough, outdated = tolerance * scale, self._is_outdated(system.matrix)
+        operator = self._operator(posed.assembled)
+        correction, _ = solver.solve(operator, posed.residual(guess), enough, outdated, system.again)
+        return posed.solution(guess + correction)
+
+    def neighbours(
+        self, system: CoupledSystem, pairs: Sequence[tuple[CoupledSystem, CoupledSystem]], tolerance: float
+    ) -> list[tuple[Solution, Solution]]:
+        """Solutions x ± δ of ``pairs`` of systems that differ little from one with the solution x, to first order:
+        its matrix times δ is half the difference of the pair's residuals r₊(x) and r₋(x).
+
+        The ``system`` has its solution as guess, which is improved first where it is none.
+        """
+        solver, assembled = self._solvers.select(system.matrix.viscosity), self._assembled(system.matrix)
+        posed, operator = self._posed(system, assembled), self._operator(assembled)
+        x = self._guess(system, assembled.twists)
+        missed = posed.residual(x)
+        if solver.norm(missed) > tolerance * max(solver.norm(posed.right_side), system.scale):
+            x += solver.solve_aside(operator, missed[:, None], tolerance)[:, 0]
+        found = [[self._posed(each, self._assemble(each.matrix)).beside(x) for each in pair] for pair in pairs]
+        self._constraint.place(system.matrix.node_points, system.matrix.position)
+        half = [0.5 * (plus.residual - minus.residual) for plus, minus in found]
+        changes = solver.solve_aside(operator, np.stack(half, axis=1), tolerance)
+        return [
+            (assembled.moved(plus.solution, change), assembled.moved(minus.solution, -change))
+            for (plus, minus), change in zip(found, changes.T, strict=True)
+        ]
 
     def twist_response(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
         assembled, free = self._assembled(matrix), ~matrix.prescribed
@@ -290,6 +351,15 @@ class SparseDiscretisation:
         if self._reduced is None:
             self._reduced = ReducedMatrix(self._constraint, system_matrix)
         return self._reduced
+
+    def _posed(self, system: CoupledSystem, assembled: _Assembled) -> _Posed:
+        constraint, matrix = self._constraint, system.matrix
+        given = np.concatenate([(system.prescribed - matrix.frame).ravel(), system.pressure_jump])
+        load = np.concatenate([system.load.ravel(), np.zeros(self.numbering.vertices)])
+        known = assembled.system_matrix @ given if given.any() else 0.0
+        right_side = constraint.transposed @ (load - known)
+        right_side[assembled.twists] += system.body_load[~matrix.prescribed].ravel()
+        return _Posed(system, assembled, given, load, right_side)
 
     def _guess(self, system: CoupledSystem, twists: slice) -> FloatArray:
         constraint, pressure = self._constraint, system.pressure - system.pressure_jump

@@ -51,7 +51,7 @@ def advance(equations: Equations, tolerance: float, attempt: FluidState | None) 
     """
     discretisation, step = equations.discretisation, equations.step
     on_faces = pressure_load(discretisation.surfaces, equations.matrix.node_points, step.time)
-    system = _system(equations, on_faces)
+    system = coupled_system(equations, on_faces)
     if attempt is not None:
         guess = step.kinematics.motion_twist(attempt["twist"])
         velocity, pressure = attempt["velocity"], attempt["pressure"]
@@ -79,16 +79,15 @@ def _measured(equations: Equations, solution: Solution, on_faces: FloatArray, li
     """The step's result: its state, and the forces and energies of its solution."""
     discretisation, matrix, fluid = equations.discretisation, equations.matrix, equations.fluid
     problem, surfaces, step = discretisation.problem, discretisation.surfaces, equations.step
-    d, at, velocity = problem.dimension, matrix.node_points, solution.velocity
+    at, velocity = matrix.node_points, solution.velocity
     mean = 0.5 * (fluid["velocity"] + velocity)
     midway = 0.5 * (equations.mesh.geometry + matrix.points)
     begins = problem.inertia and step.derivative[2] == 0.0
-    on_bodies = -surfaces.resultants(solution.reaction, at, step.pose.position)
     at_faces = FaceFlow(surfaces, problem.inert_density, at, velocity, equations.mesh_velocity)
     return Advance(
-        fluid=_state(equations, solution),
-        twist=_twist(solution, d),
-        hydrodynamic_wrench=Wrench(on_bodies[:, :d], on_bodies[:, d:]),
+        fluid=state_at_end(equations, solution),
+        twist=motion_twist(solution),
+        hydrodynamic_wrench=hydrodynamic_wrench(equations, solution),
         kinetic_energy=kinetic_energy(discretisation, matrix.points, velocity),
         dissipation=dissipation(discretisation, matrix.points, velocity),
         dissipation_midway=dissipation(discretisation, midway, mean),
@@ -129,10 +128,17 @@ def _stresslets(equations: Equations, solution: Solution) -> FloatArray:
     return np.asarray(found - raised * volumes[:, None, None] * np.eye(points.shape[1]))
 
 
-def _state(equations: Equations, solution: Solution) -> FluidState:
+def hydrodynamic_wrench(equations: Equations, solution: Solution) -> Wrench:
+    """The fluid's force and torque on each body."""
+    at, position = equations.matrix.node_points, equations.step.pose.position
+    on_bodies = -equations.discretisation.surfaces.resultants(solution.reaction, at, position)
+    return Wrench(*np.split(on_bodies, [position.shape[1]], axis=1))
+
+
+def state_at_end(equations: Equations, solution: Solution) -> FluidState:
     """The fluid's state at the end of the step, with what it keeps of the one before."""
     fluid, step, discretisation = equations.fluid, equations.step, equations.discretisation
-    twist = _twist(solution, discretisation.problem.dimension)
+    twist = motion_twist(solution)
     state = {
         "velocity": solution.velocity,
         "velocity_previous": fluid["velocity"],
@@ -150,8 +156,9 @@ def _state(equations: Equations, solution: Solution) -> FluidState:
     return state
 
 
-def _twist(solution: Solution, dimension: int) -> Twist:
-    return Twist(solution.twist[:, :dimension], solution.twist[:, dimension:])
+def motion_twist(solution: Solution) -> Twist:
+    """Twists of the motions."""
+    return Twist(*np.split(solution.twist, [solution.velocity.shape[1]], axis=1))
 
 
 def _source_power(equations: Equations, velocity: FloatArray) -> float:
@@ -227,7 +234,8 @@ def _expected_twist(fluid: FluidState, step: Step) -> FloatArray:
     return step.kinematics.motion_twist(e0 * fluid["twist"] + e1 * fluid["twist_previous"])
 
 
-def _system(equations: Equations, on_faces: FloatArray) -> CoupledSystem:
+def coupled_system(equations: Equations, on_faces: FloatArray) -> CoupledSystem:
+    """The linear system of a step, with the force ``on_faces`` (nodes, d) of given pressures and its guess."""
     discretisation, matrix = equations.discretisation, equations.matrix
     fluid, step = equations.fluid, equations.step
     node_points, prescribed, surfaces = matrix.node_points, matrix.prescribed, discretisation.surfaces

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from rigidfluid.core.fluid.material import Newtonian
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.types import Links
 from rigidfluid.errors import StepRejected
 from rigidfluid.taylor_hood.system.coupled import CoupledMatrix, CoupledSystem, Solution
@@ -40,11 +41,10 @@ def solve_newton(
     points, change, latest = system.matrix.points, np.inf, system
     enough = _SHARE * tolerance**0.5
     for iteration in range(_MOST):
-        stress = linearised(discretisation, points, latest.velocity)
-        matrix = replace(system.matrix, local=stress.local)
-        latest = replace(latest, matrix=matrix, load=system.load + stress.load)
+        latest = linearised_about(discretisation, replace(latest, load=system.load), latest.velocity)
+        matrix = latest.matrix
         driven = solve_driven(discretisation, latest, links, time, tolerance)
-        change = relative_change(discretisation, points, latest.velocity, driven.solution.velocity, stress.local)
+        change = relative_change(discretisation, points, latest.velocity, driven.solution.velocity, matrix.local)
         if change <= enough:
             return matrix, driven
         share = 1.0 if iteration == 0 else _share_of_change(discretisation, latest, driven.solution)
@@ -55,6 +55,12 @@ def solve_newton(
         f"at most {enough:.1g}",
         "Shorten time.step, or choose a material whose viscosity varies less, as with a smaller stress_growth.",
     )
+
+
+def linearised_about(discretisation: Discretisation, system: CoupledSystem, velocity: FloatArray) -> CoupledSystem:
+    """A ``system`` whose ``load`` is without stress, with that of a ``velocity`` (nodes, d) to first order."""
+    stress = linearised(discretisation, system.matrix.points, velocity)
+    return replace(system, matrix=replace(system.matrix, local=stress.local), load=system.load + stress.load)
 
 
 def _share_of_change(discretisation: Discretisation, guess: CoupledSystem, solution: Solution) -> float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,7 +15,7 @@ from rigidfluid.core.model.types import Mesh
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.elements.surfaces import Surfaces
 from rigidfluid.taylor_hood.system.coupled import CoupledMatrix, CoupledSystem, Solution
-from rigidfluid.taylor_hood.system.discretisation import Discretisation, Projection
+from rigidfluid.taylor_hood.system.discretisation import Discretisation, Linearisable, Projection
 from rigidfluid.taylor_hood.system.local_viscosity import StrainRates
 
 _DIVERGENCE = 1.0 / 32.0
@@ -69,15 +71,31 @@ class Dimensionless:
 
     def solve(self, system: CoupledSystem, tolerance: float) -> Solution:
         scaled = self._scaled(system.matrix)
-        found, twists = self.inner.solve(scaled.system(system), tolerance), scaled.twists
-        twist = np.where(system.matrix.prescribed[:, None], system.twist, found.twist * twists)
-        return Solution(
-            velocity=found.velocity,
-            pressure=found.pressure * scaled.pressure,
-            twist=twist,
-            reaction=found.reaction * scaled.force,
-            jump_load=None if found.jump_load is None else found.jump_load * scaled.force,
-        )
+        return scaled.solution(self.inner.solve(scaled.system(system), tolerance), system)
+
+    def twin(self, problem: FluidProblem) -> Dimensionless:
+        """The same discretisation, in the same units, of a ``problem`` with other values."""
+        twin = copy(self)
+        twin.problem, twin.surfaces = problem, self.surfaces.under(problem.conditions)
+        return twin
+
+    def neighbours(
+        self, system: CoupledSystem, pairs: Sequence[tuple[CoupledSystem, CoupledSystem]], tolerance: float
+    ) -> list[tuple[Solution, Solution]]:
+        """Solutions of ``pairs`` of systems that differ little from a solved one, see `SparseDiscretisation`, all in
+        the units of that one."""
+        assert isinstance(self.inner, Linearisable)
+        scaled = self._scaled(system.matrix)
+
+        def in_its_units(each: CoupledSystem) -> CoupledSystem:
+            return _Scaled(each.matrix, self.numbering, self._length, scaled.force).system(each)
+
+        asked = [(in_its_units(plus), in_its_units(minus)) for plus, minus in pairs]
+        found = self.inner.neighbours(scaled.system(system), asked, tolerance)
+        return [
+            (scaled.solution(plus, pair[0]), scaled.solution(minus, pair[1]))
+            for (plus, minus), pair in zip(found, pairs, strict=True)
+        ]
 
     def twist_response(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
         scaled = self._scaled(matrix)
@@ -92,7 +110,8 @@ class Dimensionless:
         """The latest of a step and the latest of its masses are kept: who solves knows a matrix by its identity."""
         viscous = matrix.viscosity != 0.0
         if viscous not in self._latest or self._latest[viscous][0] is not matrix:
-            self._latest[viscous] = matrix, _Scaled(matrix, self.numbering, self._length)
+            force = _unit_force(matrix, self._length)
+            self._latest[viscous] = matrix, _Scaled(matrix, self.numbering, self._length, force)
         return self._latest[viscous][1]
 
 
@@ -100,9 +119,9 @@ class _Scaled:
     """A ``matrix`` without dimensions; ``force`` Z [force·time/length], ``pressure`` Z/hᵈ⁻¹, and ``twists`` (d+k,), 1
     and 1/h."""
 
-    def __init__(self, m: CoupledMatrix, numbering: Numbering, length: float) -> None:
+    def __init__(self, m: CoupledMatrix, numbering: Numbering, length: float, force: float) -> None:
         d = m.points.shape[1]
-        self.force = _DIVERGENCE * (m.inertia * length**d + m.viscosity * length ** (d - 2))
+        self.force = force
         self.pressure = self.force / length ** (d - 1)
         self.twists = np.where(np.arange(m.mass_matrix.shape[1]) < d, 1.0, 1.0 / length)
         self.matrix = CoupledMatrix(
@@ -130,6 +149,23 @@ class _Scaled:
             pressure_jump=s.pressure_jump / self.pressure,
             scale=s.scale / self.force,
         )
+
+    def solution(self, found: Solution, s: CoupledSystem) -> Solution:
+        """The solution of a system ``s`` in its units."""
+        twist = np.where(s.matrix.prescribed[:, None], s.twist, found.twist * self.twists)
+        return Solution(
+            velocity=found.velocity,
+            pressure=found.pressure * self.pressure,
+            twist=twist,
+            reaction=found.reaction * self.force,
+            jump_load=None if found.jump_load is None else found.jump_load * self.force,
+        )
+
+
+def _unit_force(matrix: CoupledMatrix, length: float) -> float:
+    """Z of a matrix [force·time/length]."""
+    d = matrix.points.shape[1]
+    return float(_DIVERGENCE * (matrix.inertia * length**d + matrix.viscosity * length ** (d - 2)))
 
 
 @dataclass(frozen=True)

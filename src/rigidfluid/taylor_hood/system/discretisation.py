@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Sequence
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -73,6 +74,17 @@ class Discretisation(Protocol):
 
     def velocity_response(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
         """The velocity (nodes, d) that a ``wrench`` (n, d+k) on the bodies gives by itself."""
+
+
+@runtime_checkable
+class Linearisable(Protocol):
+    """Discretisation that linearises a step about its solution."""
+
+    def neighbours(
+        self, system: CoupledSystem, pairs: Sequence[tuple[CoupledSystem, CoupledSystem]], tolerance: float
+    ) -> list[tuple[Solution, Solution]]:
+        """Solutions, to first order, of ``pairs`` of systems that differ little from one whose guess solves it; raises
+        StepRejected."""
 
 
 def kinetic_energy(discretisation: Discretisation, points: FloatArray, velocity: FloatArray) -> float:

@@ -11,12 +11,8 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Mesh, Pose
 
 
-class Updater(Protocol):
-    """Keeper of a run's mesh: it moves the mesh with the bodies, and re-makes it when ``needs_remesh`` says so."""
-
-    system: System
-    """The present system; another one may be put in its place between steps."""
-    needs_remesh: Callable[[State, Pose], bool]
+class FirstMesh(Protocol):
+    """Maker of a run's first mesh."""
 
     def first_mesh(self) -> Mesh:
         """The mesh around the bodies' initial pose."""
@@ -24,6 +20,14 @@ class Updater(Protocol):
     def first_reference(self, mesh: Mesh, gaps: FloatArray) -> Reference:
         """The first ``mesh`` as what later ones are moved from and compared with; nearest ``gaps`` (n,) there
         [length]."""
+
+
+class Updater(FirstMesh, Protocol):
+    """Keeper of a run's mesh: it moves the mesh with the bodies, and re-makes it when ``needs_remesh`` says so."""
+
+    system: System
+    """The present system; another one may be put in its place between steps."""
+    needs_remesh: Callable[[State, Pose], bool]
 
     def deform(self, state: State, pose: Pose) -> Mesh:
         """The mesh when the bodies are at ``pose``; raises StepRejected where a cell is tangled."""

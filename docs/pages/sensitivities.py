@@ -1,0 +1,134 @@
+"""Derivatives of a fall and of a bounce by values of their scenes: against differences of runs, and what they cost."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.figure import Figure
+from page_tools import Page, Run, Work, table
+
+SHARE = 1e-4
+"""Half the difference of the values of two runs, relative to the value."""
+
+COLUMNS = {"y": "place", "vy": "velocity", "fy": "force"}
+"""Columns that are compared, and their names."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A ``scene`` cut short by ``overrides``, and the ``keys`` with their values in it."""
+
+    title: str
+    scene: str
+    overrides: tuple[str, ...]
+    keys: Mapping[str, float]
+    columns: tuple[str, ...]
+
+
+CASES = {
+    "fall": Case(
+        "a disk falls",
+        "falling_disk.toml",
+        ("time.end=0.1",),
+        {"body.0.density": 1.25, "fluid.density": 1.0, "fluid.viscosity": 0.1, "fluid.gravity.1": -981.0},
+        ("y", "vy", "fy"),
+    ),
+    "driven": Case(
+        "a disk is driven",
+        "falling_disk.toml",
+        ("time.end=0.02", "body.0.prescribed={amplitude=[0.0, 0.01], frequency=5.0}"),
+        {"body.0.prescribed.amplitude.1": 0.01, "body.0.prescribed.frequency": 5.0, "fluid.viscosity": 0.1},
+        ("y", "vy", "fy"),
+    ),
+}
+"""Cases by the first word of their folders."""
+
+
+class Compared:
+    """Runs of a ``case``: one with derivatives, one without, and two for each key."""
+
+    def __init__(self, work: Work, name: str, case: Case) -> None:
+        self.case = case
+        keys = ", ".join(f"'{key}'" for key in case.keys)
+        self.watched = work.run(f"{name}_watched", case.scene, [*case.overrides, f"output.sensitivities=[{keys}]"])
+        self.pairs = {key: _pair(work, f"{name}_{key}", case, key) for key in case.keys}
+
+    def derivative(self, key: str, column: str) -> np.ndarray:
+        """Derivative over time as the run tells it, from its first step on."""
+        rows = self.watched.history.sensitivities
+        return np.asarray(rows[column][rows["parameter"] == key][-len(self.times) :])
+
+    def difference(self, key: str, column: str) -> np.ndarray:
+        """The same by the difference of two runs."""
+        plus, minus = (run.history.bodies[column] for run in self.pairs[key])
+        return np.asarray((plus - minus)[1:] / (2.0 * SHARE * self.case.keys[key]))
+
+    @property
+    def times(self) -> np.ndarray:
+        """Ends of the steps."""
+        return np.asarray(self.watched.history.steps["time"])
+
+    def error(self, key: str, column: str) -> float:
+        """Greatest difference of both in the last half of the steps, over the greatest derivative [1]."""
+        found, expected = self.derivative(key, column), self.difference(key, column)
+        return float(np.abs(found - expected)[len(found) // 2 :].max() / np.abs(expected).max())
+
+    @property
+    def cost(self) -> float:
+        """Time of a step's derivatives by one key over that of the step itself [1]."""
+        seconds = self.watched.summary["seconds"]
+        step = sum(seconds.get(stage, 0.0) for stage in ("response", "contact", "move mesh", "detect", "advance"))
+        return float(seconds["sensitivities"] / len(self.case.keys) / step)
+
+
+def _pair(work: Work, label: str, case: Case, key: str) -> tuple[Run, Run]:
+    """Runs with values on both sides of that of a ``key``, solved to a residual of 1e-12."""
+    value = case.keys[key]
+    plus, minus = (f"{key}={value * (1.0 + sign * SHARE)!r}" for sign in (1.0, -1.0))
+    tight = (*case.overrides, "fluid.tolerance=1e-12")
+    return work.run(f"{label}_plus", case.scene, [*tight, plus]), work.run(
+        f"{label}_minus", case.scene, [*tight, minus]
+    )
+
+
+def page(work: Work) -> Page:
+    """Derivatives over time, and a table of their errors and costs."""
+    found = [Compared(work, name, case) for name, case in CASES.items()]
+    errors = [one.error(key, column) for one in found for key in one.case.keys for column in one.case.columns]
+    rows = [row for one in found for row in _rows(one)]
+    head = ("", "key", *(f"error of the {name}'s" for name in COLUMNS.values()), "steps", "cost of a key over a step's")
+    text = ABOUT.format(table=table(head, rows), greatest=max(errors), share=SHARE)
+    return Page("Derivatives by values of a scene", text, {"": plot(found[0])})
+
+
+def _rows(one: Compared) -> Iterable[tuple[str, ...]]:
+    for key in one.case.keys:
+        errors = (f"{one.error(key, column):.1e}" for column in COLUMNS)
+        yield one.case.title, f"`{key}`", *errors, f"{len(one.times)}", f"{one.cost:.2f}"
+
+
+def plot(one: Compared) -> Figure:
+    """Elasticities of place and velocity over time, by the run and by differences."""
+    figure = Figure(figsize=(9.0, 4.0), dpi=120, layout="constrained")
+    for axes, (column, name) in zip(figure.subplots(1, 2), list(COLUMNS.items())[:2], strict=True):
+        for key, value in one.case.keys.items():
+            (line,) = axes.plot(one.times, value * one.derivative(key, column), label=key)
+            axes.plot(
+                one.times[::10], value * one.difference(key, column)[::10], "o", mfc="none", color=line.get_color()
+            )
+        axes.set(xlabel="time [s]", ylabel=f"p · derivative of the {name} [cm{'/s' if column == 'vy' else ''}]")
+    axes.legend(fontsize=8)
+    return figure
+
+
+ABOUT = """`output.sensitivities` compared with differences of whole runs, whose value p of the key differs by ±{share:g} of it
+and whose systems are solved to 1e-12; the runs with derivatives are solved to the usual 1e-9. Errors are the greatest in the last half of
+the steps, over the greatest derivative in the run. In the figure lines are the run's derivatives by each key, times its value; circles are differences.
+
+{table}
+
+The greatest error is {greatest:.1e}. Seconds of a step are those of moving the mesh, detecting and solving; derivatives by one key
+take the given share of them, where two runs take two. How they are found, and where they end, is in
+[decision 111](../decisions/111-sensitivities.md)."""

@@ -1,0 +1,91 @@
+"""Systems of a scene on both sides of a value of one of its keys."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from copy import deepcopy
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.scene_model import model_of
+from rigidfluid.core.geometry.value_types import describe
+from rigidfluid.core.model.system import System
+from rigidfluid.core.scene.overrides import assign
+from rigidfluid.core.setup.assemble import assemble
+from rigidfluid.errors import RigidfluidError, SceneError
+
+_SHARE = 4e-5
+"""Half the difference of values, relative to the value [1]: central differences err by its square, and by rounding over
+it, of a place after little way above all."""
+
+_TIGHT = 1e-12
+"""Relative residual of flows at the start, which are solved for on both sides."""
+
+_SHAPES = ("scene", "domain", "mesh", "time", "output", "source", "sink", "swarm")
+"""Tables on which meshes, steps or the number of bodies depend."""
+
+_FIELD = "output.sensitivities"
+
+
+class SystemPair(NamedTuple):
+    """Systems at p + h and p - h of a ``key`` with the value p; ``half`` is h."""
+
+    key: str
+    half: float
+    plus: System
+    minus: System
+
+
+def system_pair(document: Mapping[str, Any], system: System, key: str) -> SystemPair:
+    """Systems of the scene in a ``document``, whose own is ``system``, on both sides of the value of a ``key``.
+
+    Raises SceneError where the key has no number to differ, or the mesh would be another one.
+    """
+    value = _number(document, key)
+    half = _SHARE * abs(value)
+    plus, minus = (_system(document, key, each) for each in (value + half, value - half))
+    if not (_has_same_shapes(system, plus) and _has_same_shapes(system, minus)):
+        raise SceneError(_FIELD, repr(key), "a key on which no shape and no place depends", "Run with two values.")
+    return SystemPair(key, half, plus, minus)
+
+
+def _number(document: Mapping[str, Any], key: str) -> float:
+    table, *rest = key.split(".")
+    remedy = "Name a key with a number as fluid.viscosity, body.0.density or fluid.gravity.1."
+    if table in _SHAPES:
+        found = f"{key!r}, on which meshes or steps depend"
+        raise SceneError(_FIELD, found, "a key of another table", "Run with two values.")
+    value: Any = document
+    for part in (table, *rest):
+        if isinstance(value, Mapping) and part in value:
+            value = value[part]
+        elif isinstance(value, list | tuple) and part.isdecimal() and int(part) < len(value):
+            value = value[int(part)]
+        else:
+            raise SceneError(_FIELD, repr(key), "a key that the scene has", remedy)
+    if isinstance(value, bool) or not isinstance(value, int | float) or value == 0:
+        raise SceneError(_FIELD, f"{key!r} with {describe(value)}", "a key with a number other than 0", remedy)
+    return float(value)
+
+
+def _system(document: Mapping[str, Any], key: str, value: float) -> System:
+    tables = deepcopy(dict(document))
+    assign(tables, key, value)
+    if tables["fluid"].get("backend") != "dry":
+        assign(tables, "fluid.tolerance", _TIGHT)
+    try:
+        return assemble(model_of(scene_from_dict(tables)))
+    except RigidfluidError as error:
+        raise error.renamed(lambda subject: f"{_FIELD} with {key} = {value!r}: {subject}") from error
+
+
+def _has_same_shapes(system: System, other: System) -> bool:
+    return (
+        np.array_equal(system.bounding_radii, other.bounding_radii)
+        and np.array_equal(system.pose.position, other.pose.position)
+        and np.array_equal(system.pose.orientation, other.pose.orientation)
+        and np.array_equal(system.prescribed, other.prescribed)
+        and [body.volume for body in system.bodies] == [body.volume for body in other.bodies]
+    )

@@ -1,0 +1,127 @@
+"""Derivatives of a run's states along values of its scene, by two neighbours of it for each value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from rigidfluid.core.coupling.schemes import scheme_of
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.mechanics.rigid import rotation_between
+from rigidfluid.core.model.state import Reference, State
+from rigidfluid.core.model.system import System
+from rigidfluid.core.model.types import Mesh
+from rigidfluid.core.output.records import Row
+from rigidfluid.core.run.initial_state import initial_state
+from rigidfluid.core.run.neighbour_systems import SystemPair, system_pair
+from rigidfluid.core.run.neighbours import Neighbour, Pair, followed
+from rigidfluid.core.run.step import Tools
+from rigidfluid.core.run.sudden_start import faces_start_at_once
+from rigidfluid.errors import SceneError, StepRejected
+
+_PARTS = {
+    "twist": ("velocity", "angular_velocity"),
+    "hydrodynamic_wrench": ("force", "torque"),
+    "contact_wrench": ("force", "torque"),
+}
+"""Parts of a state that are told, besides poses."""
+
+
+class Sensitivities:
+    """Derivatives dS/dp of a run's states S along values p of its scene, named by their ``keys``, from its start.
+
+    Two neighbours with p ± h go along: (S₊ - S₋)/2h. In a fluid both are beside the run's own solution y by half the
+    difference of their residuals, K δ = ½ (r₊(y) - r₋(y)), with K and the factors of its own step. They end where the
+    run leaves the steps that have such a derivative; ``ended`` says why, None until then.
+    """
+
+    def __init__(self, document: Mapping[str, Any], tools: Tools, state: State, keys: Sequence[str]) -> None:
+        _refuse_links(tools.system)
+        self._tools, self._latest = tools, state
+        self._systems = [system_pair(document, tools.system, key) for key in keys]
+        self._pairs = [self._begun(pair) for pair in self._systems]
+        self.ended: str | None = None
+
+    def follow(self, system: System, before: State, after: State) -> None:
+        """Go along with a step that a run has taken; ``system`` is its present one."""
+        if self.ended is not None:
+            return
+        self.ended = self._reason_to_end(system, before, after)
+        if self.ended is None:
+            try:
+                self._pairs = followed(self._tools, before, after, self._pairs)
+                self._latest = after
+            except StepRejected as error:
+                self.ended = f"a neighbour of the run has failed: {error}"
+
+    def rows(self, stamp: Row) -> Iterator[Row]:
+        """A row for each value and body, none after the end."""
+        if self.ended is None:
+            names = self._tools.system.surfaces
+            for pair, (plus, minus) in zip(self._systems, self._pairs, strict=True):
+                change = _change(plus.state, minus.state) / (2.0 * pair.half)
+                for name, row in zip(names, change.tolist(), strict=False):
+                    yield (*stamp, pair.key, name, *row)
+
+    def _reason_to_end(self, system: System, before: State, after: State) -> str | None:
+        if system is not self._tools.system or before is not self._latest:
+            return "the run was changed from outside"
+        if after.reference is not before.reference:
+            return "the mesh was made anew"
+        if after.coupling is not None:
+            return "bodies in the fluid were near contacts"
+        return None
+
+    def _begun(self, pair: SystemPair) -> Pair:
+        return self._neighbour(pair.plus), self._neighbour(pair.minus)
+
+    def _neighbour(self, system: System) -> Neighbour:
+        """Neighbour in the run's first state, with the run's backend."""
+        tools, state = self._tools, self._latest
+        if not _starts_at_rest(system, state):
+            state = initial_state(system, _SameMesh(state), tools.clock)
+        own = replace(system, make_backend=tools.system.make_backend)
+        return Neighbour(replace(tools, system=own, scheme=scheme_of(own)), state)
+
+
+def _refuse_links(system: System) -> None:
+    """Raise SceneError where the fluid's solution holds motions, by forces that are unknowns of their own."""
+    if len(system.solved_joints.links(system.motions.pose, 0.0).rate):
+        found = "joints, held directions or dampers in a fluid"
+        raise SceneError("output.sensitivities", found, "bodies without them", "Run with two values.")
+
+
+class _SameMesh:
+    """Mesh of a run's first ``state``, for its neighbours."""
+
+    def __init__(self, state: State) -> None:
+        self._state = state
+
+    def first_mesh(self) -> Mesh:
+        """The run's own."""
+        return self._state.mesh
+
+    def first_reference(self, mesh: Mesh, gaps: FloatArray) -> Reference:
+        """The run's own."""
+        return self._state.reference
+
+
+def _starts_at_rest(system: System, state: State) -> bool:
+    """Tell whether there is a fluid in which nothing moves at the start, whatever values it has."""
+    problem, moves = system.fluid, system.twist.velocity.any() or system.twist.angular_velocity.any()
+    if problem is None or problem.initial != "rest" or moves:
+        return False
+    return not faces_start_at_once(problem, state.mesh)
+
+
+def _change(plus: State, minus: State) -> FloatArray:
+    """Difference of two states in poses, twists and wrenches of the bodies, a row for each."""
+    turned = rotation_between(minus.pose.orientation, plus.pose.orientation)
+    columns = [plus.pose.position - minus.pose.position, turned]
+    for name, parts in _PARTS.items():
+        one, other = getattr(plus, name), getattr(minus, name)
+        columns += [getattr(one, part) - getattr(other, part) for part in parts]
+    return np.concatenate(columns, axis=1)
