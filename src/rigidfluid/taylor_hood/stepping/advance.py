@@ -60,10 +60,15 @@ def advance(equations: Equations, tolerance: float, attempt: FluidState | None) 
     solution, on_faces = driven.solution, on_faces + driven.load
     if solution.jump_load is not None:
         on_faces = on_faces + solution.jump_load
-    moving = Moving(discretisation, step, matrix.points)
-    if moving.free:
-        solution = moving.with_gain(solution, _momentum_load(equations, on_faces))
+    solution = with_momentum_kept(equations, solution, on_faces)
     return _measured(replace(equations, matrix=matrix), solution, on_faces, driven.link_force)
+
+
+def with_momentum_kept(equations: Equations, solution: Solution, on_faces: FloatArray) -> Solution:
+    """The solution with the momentum that loads, those ``on_faces`` (nodes, d) among them, have given, where nothing
+    outside takes any."""
+    moving = Moving(equations.discretisation, equations.step, equations.matrix.points)
+    return moving.with_gain(solution, _momentum_load(equations, on_faces)) if moving.free else solution
 
 
 def _momentum_load(equations: Equations, on_faces: FloatArray) -> FloatArray:

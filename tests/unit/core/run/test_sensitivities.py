@@ -26,6 +26,7 @@ BALL = DISK | {"position": [0.5, 0.12], "velocity": [0.0, -1.0]}
 BALL_3D = {"name": "ball", "type": "sphere", "radius": 0.25, "density": 2.0, "position": [0.5, 0.45, 0.6]}
 LAW = {"law": "centre", "range": 0.02, "epsilon": 1e-6}
 PERIODIC = [{"on": "left", "type": "periodic", "pressure_drop": 0.3}, {"on": "right", "type": "periodic"}]
+ENDLESS = [{"on": side, "type": "periodic"} for side in ("left", "right", "bottom", "top")]
 PUSHED = [
     {"on": "left", "type": "velocity", "velocity": [0.5, 0.0]},
     {"on": "right", "type": "pressure", "pressure": 0.0},
@@ -55,6 +56,7 @@ CASES = {
         wet(OAR, boundary=PERIODIC),
         "boundary.0.pressure_drop",
     ),
+    "viscosity between seams alone": (wet(DISK, OAR, boundary=ENDLESS), "fluid.viscosity"),
     "material": (
         CARREAU,
         "fluid.material.exponent",
