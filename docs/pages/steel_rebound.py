@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from page_tools import Page, Run, Work, table
 
 import rigidfluid
+from pages._falls import Fall, read_fall
 from rigidfluid.core.scene.scene import Scene
 
 RADIUS, ROUGHNESS, DRY, RANGE = 0.3, 2e-4, 0.97, 0.03
@@ -71,51 +72,36 @@ class Rebound:
     run: Run
 
     @cached_property
-    def bodies(self) -> dict[str, np.ndarray]:
-        """The table of bodies."""
-        return self.run.history.bodies
+    def fall(self) -> Fall:
+        """Its fall and rebound."""
+        return read_fall(self.run, RADIUS)
 
     @cached_property
-    def gap(self) -> np.ndarray:
-        """Between sphere and floor."""
-        return self.bodies["y"] - RADIUS
-
-    @cached_property
-    def impact(self) -> int:
-        """The row of the first turn."""
-        return int(np.argmax(self.bodies["vy"] > 0.0))
-
-    @cached_property
-    def top(self) -> int:
-        """The row of the greatest height after it."""
-        return self.impact + int(np.argmax(self.gap[self.impact :]))
+    def times(self) -> np.ndarray:
+        """Times after the first row of the rebound (s,)."""
+        return np.asarray(self.fall.time - self.fall.time[self.fall.impact])
 
     @property
     def height(self) -> float:
         """Of the rebound, over the diameter."""
-        return float(self.gap[self.top] / (2.0 * RADIUS))
+        return self.fall.height / (2.0 * RADIUS)
 
     @property
     def rise(self) -> float:
         """Time from the impact to the top."""
-        return float(self.bodies["time"][self.top] - self.bodies["time"][self.impact])
+        return float(self.times[self.fall.top])
 
     @property
     def next(self) -> float | None:
         """Time from the first turn to the second, if the run has it."""
-        up = np.flatnonzero(self.bodies["vy"][self.top + 1 :] > 0.0)
-        return float(self.bodies["time"][self.top + 1 + up[0]] - self.bodies["time"][self.impact]) if len(up) else None
-
-    def speed_at(self, gap: float) -> float:
-        """Downwards, on the way in."""
-        way = slice(self.impact - 1, None, -1)
-        return -float(np.interp(gap, self.gap[way], self.bodies["vy"][way]))
+        up = np.flatnonzero(self.fall.velocity[self.fall.top + 1 :] > 0.0)
+        return float(self.times[self.fall.top + 1 + up[0]]) if len(up) else None
 
 
 def page(work: Work) -> Page:
     """Heights and times beside the measured ones, and what the roughness changes."""
     found = {label: Rebound(work.run(label, scene(*numbers))) for label, numbers in RUNS.items()}
-    arrivals = [stokes(rebound.speed_at(RANGE)) for rebound in found.values()]
+    arrivals = [stokes(rebound.fall.speed_at(RANGE)) for rebound in found.values()]
     text = ABOUT.format(
         figures=table(HEAD, [row(label, rebound) for label, rebound in found.items()]),
         judged=judged(list(found.values())),
@@ -150,7 +136,7 @@ def row(label: str, rebound: Rebound) -> tuple[str, ...]:
     return (
         f"{size:g}",
         f"{step:g}",
-        f"{rebound.speed_at(2.0 * RADIUS):.1f}",
+        f"{rebound.fall.speed_at(2.0 * RADIUS):.1f}",
         f"{rebound.height:.3f} ({rebound.height / HEIGHT - 1.0:+.1%})",
         f"{rebound.rise:.4f} ({rebound.rise / RISE - 1.0:+.1%})",
         "after the end" if rebound.next is None else f"{rebound.next:.4f} ({rebound.next / NEXT - 1.0:+.1%})",
@@ -176,8 +162,7 @@ def heights(found: dict[str, Rebound]) -> Figure:
     axes = figure.add_subplot(xlabel="time after the impact [s]", ylabel="gap under the sphere over D")
     for label, rebound in found.items():
         size, step, _ = RUNS[label]
-        time = rebound.bodies["time"] - rebound.bodies["time"][rebound.impact]
-        axes.plot(time, rebound.gap / (2.0 * RADIUS), lw=1.0, label=f"cells {size:g} cm, step {step:g} s")
+        axes.plot(rebound.times, rebound.fall.gap / (2.0 * RADIUS), lw=1.0, label=f"cells {size:g} cm, step {step:g} s")
     axes.plot([RISE], [HEIGHT], "ko", label="measured: top of the rebound")
     axes.plot([NEXT], [0.0], "k^", label="measured: next contact")
     axes.set(xlim=(-0.01, 0.05), ylim=(0.0, 0.6))

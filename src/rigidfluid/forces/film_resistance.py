@@ -53,8 +53,8 @@ class FilmResistance(NamedTuple):
 
     In 3D ``squeezing`` and ``sliding`` are lengths, ``coupling`` length², ``rolling`` and ``twisting`` length³; in 2D
     1, 1, length and length², and nothing twists. ``twisting`` is finite in contact and counted from there: below zero.
-    Where some surface is no ball's, ``sliding``, ``coupling`` and ``rolling`` are tensors (m, d, d), and C has the
-    transpose of ``coupling``.
+    The parts ``sliding``, ``coupling`` and ``rolling`` are tensors (m, d, d) where some surface is no ball's, and C has
+    the transpose of ``coupling``.
     """
 
     squeezing: FloatArray
@@ -74,8 +74,10 @@ class FilmResistance(NamedTuple):
 
     def with_tensors(self, rows: BoolArray, other: FilmResistance) -> FilmResistance:
         """Tensors in place of numbers, those of ``other`` in the ``rows`` (m,)."""
-        columns = [column[:, None, None] * np.eye(3) for column in (self.sliding, self.coupling, self.rolling)]
-        mine = FilmResistance(self.squeezing.copy(), *columns, self.twisting.copy())
+        sliding, coupling, rolling = (
+            column[:, None, None] * np.eye(3) for column in (self.sliding, self.coupling, self.rolling)
+        )
+        mine = FilmResistance(self.squeezing.copy(), sliding, coupling, rolling, self.twisting.copy())
         for column, theirs in zip(mine, other, strict=True):
             column[rows] = theirs
         return mine

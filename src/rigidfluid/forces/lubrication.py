@@ -47,8 +47,8 @@ class LubricationLaw(ForceLaw):
     r_a r_b/(r_a + r_b). Twisting is resisted in 3D alone, and finitely in contact: from a gap of R/10 on that grows by
     3 % between equal balls, by 8 % at a flat wall.
 
-    Where a body is an ellipsoid they are the leading terms alone, with an R, and tensors S, Q and W, by both surfaces'
-    curvatures; `curved_film` has them. Without ``sliding`` N is its leading term, and S, Q, W and T are zero. The film
+    Ellipsoids have the leading terms alone, with an R, and tensors S, Q and W, by both surfaces' curvatures;
+    `curved_film` has them. Without ``sliding`` N is its leading term, and S, Q, W and T are zero. The film
     takes energy out and holds nothing at rest, so its own force, energy and stiffness are zero.
 
     A cutoff that is not below range, and surfaces without a known curvature, raise SceneError.
