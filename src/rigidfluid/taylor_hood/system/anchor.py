@@ -45,7 +45,7 @@ class Anchor:
 
     def velocities(self, twist: FloatArray) -> FloatArray:
         """Velocities (c,) of the anchored motion along the directions, of the motions' ``twist`` (N, d+k)."""
-        return np.asarray(self.directions @ twist[0, : self.directions.shape[1]])
+        return np.asarray(self.directions @ twist[:1, : self.directions.shape[1]].sum(axis=0))
 
 
 def anchor(surfaces: Surfaces, matrix: CoupledMatrix, links: Links, normals: FloatArray) -> Anchor:

@@ -35,7 +35,7 @@ def solve_driven(
 
     A step is linear: its solution with the drops expected, u, and the responses u_j to a unit drop each give
     the drops δ still missing, Σ_j Q_i(u_j) δ_j = Q_i - Q_i(u), and the solution u + Σ δ_j u_j. Joints and
-    free bodies respond in each of these. Where an `Anchor` is wanted, its velocities are such unknowns as well.
+    free bodies respond in each of these. Velocities of an `Anchor` are such unknowns as well.
 
     Parameters
     ----------
