@@ -9,8 +9,10 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.types import Links
+from rigidfluid.errors import StepRejected
 from rigidfluid.taylor_hood.elements.face import Face
 from rigidfluid.taylor_hood.elements.surfaces import Surfaces
+from rigidfluid.taylor_hood.system.anchor import adrift, anchor, is_adrift
 from rigidfluid.taylor_hood.system.coupled import CoupledSystem, Solution
 from rigidfluid.taylor_hood.system.discretisation import Discretisation
 from rigidfluid.taylor_hood.system.links import solve_linked
@@ -33,7 +35,7 @@ def solve_driven(
 
     A step is linear: its solution with the drops expected, u, and the responses u_j to a unit drop each give
     the drops δ still missing, Σ_j Q_i(u_j) δ_j = Q_i - Q_i(u), and the solution u + Σ δ_j u_j. Joints and
-    free bodies respond in each of these.
+    free bodies respond in each of these. Velocities of an `Anchor` are such unknowns as well.
 
     Parameters
     ----------
@@ -52,20 +54,43 @@ def solve_driven(
     first = surfaces.first_faces
     held = [number for number, face in enumerate(first) if face.condition.held_flux is not None]
     if not held:
-        return Driven(*solve_linked(discretisation, system, links, tolerance), np.zeros_like(system.load))
+        return Driven(*_solve_undriven(discretisation, system, links, tolerance), np.zeros_like(system.load))
     faces = [first[number] for number in held]
     wanted = np.array([face.condition.held_flux(time) for face in faces if face.condition.held_flux is not None])
-    units = [_unit_drop(surfaces, face, points) for face in faces]
-    expected = surfaces.pressure_drops(system.pressure)[held]
-    load, jump = _combined(units, expected, system)
-    driven = replace(system, load=system.load + load, pressure_jump=system.pressure_jump + jump)
-    solution, force = solve_linked(discretisation, driven, links, tolerance)
+    held_still = anchor(surfaces, system.matrix, links, np.array([face.condition.normal for face in faces]))
+    units = [_unit_drop(surfaces, face, system) for face in faces]
+    units += [replace(units[0].nothing(), body_load=load) for load in held_still.loads(system.body_load)]
+
+    def missed(solution: Solution) -> FloatArray:
+        """Fluxes of a solution, and the velocities of what is anchored."""
+        through = fluxes(surfaces, faces, points, solution.velocity)
+        return np.concatenate([through, held_still.velocities(solution.twist)])
+
+    expected = np.concatenate([surfaces.pressure_drops(system.pressure)[held], held_still.velocities(system.twist)])
+    own = np.concatenate([np.zeros(len(faces)), np.ones(len(units) - len(faces))])
+    matrix = held_still.added_to(system.matrix) if len(units) > len(faces) else system.matrix
+    system = replace(system, matrix=matrix)
+    driving = _combined(units, expected)
+    solution, force = solve_linked(discretisation, driving.added_to(system), links, tolerance)
     responses = [_response(discretisation, system, unit, links, tolerance) for unit in units]
-    by_drop = np.array([fluxes(surfaces, faces, points, each.velocity) for each, _ in responses]).T
-    missing = np.linalg.solve(by_drop, wanted - fluxes(surfaces, faces, points, solution.velocity))
-    for drop, (each, of_links) in zip(missing, responses, strict=True):
-        solution, force = _plus(solution, each, drop), force + drop * of_links
-    return Driven(solution, force, load + _combined(units, missing, system)[0])
+    by_unit = np.array([missed(each) for each, _ in responses]).T - np.diag(own)
+    goal = np.concatenate([wanted, expected[len(faces) :]])
+    change = np.linalg.solve(by_unit, goal - missed(solution))
+    for factor, (each, of_links) in zip(change, responses, strict=True):
+        solution, force = _plus(solution, each, factor), force + factor * of_links
+    return Driven(solution, force, driving.load + _combined(units, change).load)
+
+
+def _solve_undriven(
+    discretisation: Discretisation, system: CoupledSystem, links: Links, tolerance: float
+) -> tuple[Solution, FloatArray]:
+    """Solve without held fluxes; where that fails, tell if these are what lacks."""
+    try:
+        return solve_linked(discretisation, system, links, tolerance)
+    except StepRejected as error:
+        if is_adrift(discretisation.surfaces, system.matrix, links):
+            raise adrift("no flux") from error
+        raise
 
 
 def fluxes(surfaces: Surfaces, faces: Sequence[Face], node_points: FloatArray, velocity: FloatArray) -> FloatArray:
@@ -73,41 +98,64 @@ def fluxes(surfaces: Surfaces, faces: Sequence[Face], node_points: FloatArray, v
     return np.asarray(surfaces.ranks.sum(np.array([face.inflow(node_points, velocity).sum() for face in faces])))
 
 
-def _unit_drop(surfaces: Surfaces, face: Face, node_points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Load (nodes, d) and pressure jump (vertices,) of a unit drop of pressure from a face on."""
-    load = np.zeros_like(node_points)
-    np.add.at(load, face.facet_nodes, face.area_vectors(node_points))
-    return load, surfaces.unit_jump(face.condition.surface)
+@dataclass(frozen=True, eq=False)
+class _Unit:
+    """Right side of a unit of one unknown: ``load`` (nodes, d) and pressure ``jump`` (vertices,) of a drop, or
+    ``body_load`` (N, d+k) of an anchor."""
+
+    load: FloatArray
+    jump: FloatArray
+    body_load: FloatArray
+
+    def nothing(self) -> _Unit:
+        return _Unit(*(np.zeros_like(each) for each in (self.load, self.jump, self.body_load)))
+
+    def added_to(self, system: CoupledSystem) -> CoupledSystem:
+        return replace(
+            system,
+            load=system.load + self.load,
+            pressure_jump=system.pressure_jump + self.jump,
+            body_load=system.body_load + self.body_load,
+        )
 
 
-def _combined(
-    units: Sequence[tuple[FloatArray, FloatArray]], drops: FloatArray, system: CoupledSystem
-) -> tuple[FloatArray, FloatArray]:
-    """Load (nodes, d) and pressure jump (vertices,) of ``drops`` (c,), each times its unit."""
-    load, jump = np.zeros_like(system.load), np.zeros_like(system.pressure_jump)
-    for drop, (unit_load, unit_jump) in zip(drops, units, strict=True):
-        load, jump = load + drop * unit_load, jump + drop * unit_jump
-    return load, jump
+def _unit_drop(surfaces: Surfaces, face: Face, system: CoupledSystem) -> _Unit:
+    """Load and pressure jump of a unit drop of pressure from a face on."""
+    points, load = system.matrix.node_points, np.zeros_like(system.load)
+    np.add.at(load, face.facet_nodes, face.area_vectors(points))
+    return _Unit(load, surfaces.unit_jump(face.condition.surface), np.zeros_like(system.body_load))
+
+
+def _combined(units: Sequence[_Unit], factors: FloatArray) -> _Unit:
+    """The ``units``, each times its factor, added up."""
+    found = units[0].nothing()
+    for factor, unit in zip(factors, units, strict=True):
+        found = _Unit(
+            found.load + factor * unit.load,
+            found.jump + factor * unit.jump,
+            found.body_load + factor * unit.body_load,
+        )
+    return found
 
 
 def _response(
     discretisation: Discretisation,
     system: CoupledSystem,
-    unit: tuple[FloatArray, FloatArray],
+    unit: _Unit,
     links: Links,
     tolerance: float,
 ) -> tuple[Solution, FloatArray]:
-    """Solution and forces of links by one ``unit`` drop alone, all that is prescribed at rest."""
-    frame, (load, jump) = system.matrix.frame, unit
+    """Solution and forces of links by one ``unit`` alone, all that is prescribed at rest."""
+    frame = system.matrix.frame
     alone = replace(
         system,
-        load=load,
-        body_load=np.zeros_like(system.body_load),
-        prescribed=np.broadcast_to(frame, load.shape).copy(),  # the equations are of u less the frame's velocity
-        velocity=np.zeros_like(load),
-        pressure=jump,
+        load=unit.load,
+        body_load=unit.body_load,
+        prescribed=np.broadcast_to(frame, unit.load.shape).copy(),  # the equations are of u less the frame's velocity
+        velocity=np.zeros_like(unit.load),
+        pressure=unit.jump,
         twist=np.zeros_like(system.twist),
-        pressure_jump=jump,
+        pressure_jump=unit.jump,
         scale=0.0,
         again=True,
     )
@@ -117,12 +165,12 @@ def _response(
 
 def _plus(solution: Solution, other: Solution, factor: float) -> Solution:
     """A ``solution`` and ``factor`` times another, whose prescribed velocities and twists are zero."""
-    here, there = solution.jump_load, other.jump_load
-    assert there is not None, "a drop has a jump"
+    jumps = [(1.0, solution.jump_load), (factor, other.jump_load)]
+    jump_loads = [weight * load for weight, load in jumps if load is not None]
     return Solution(
         velocity=solution.velocity + factor * other.velocity,
         pressure=solution.pressure + factor * other.pressure,
         twist=solution.twist + factor * other.twist,
         reaction=solution.reaction + factor * other.reaction,
-        jump_load=factor * there if here is None else here + factor * there,
+        jump_load=sum(jump_loads[1:], jump_loads[0]) if jump_loads else None,
     )

@@ -24,6 +24,7 @@ from rigidfluid.core.mesh.size.size_field import Sizes, wanted_size
 from rigidfluid.core.mesh.topology import distinct_edges
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.types import Mesh, Periods
+from rigidfluid.errors import MeshError
 
 WELL_SHAPED = 0.3
 """Least quality of cells at the seam with which the mesh is not cut open elsewhere."""
@@ -195,5 +196,7 @@ def _nearest(mesh: Mesh, wishes: _Wishes, ways: FloatArray) -> IntArray:
         inside = np.all((image >= lower) & (image <= upper), axis=1)
         points.append(image[inside])
         shifts.append(np.tile(np.array(step), (int(inside.sum()), 1)))
+    if not sum(map(len, points)):
+        raise MeshError("mesh", "no body near its cells", "bodies a few periods away at most", "Shorten time.step.")
     _, nearest = scipy.spatial.cKDTree(np.concatenate(points)).query(centres)
     return np.asarray(np.concatenate(shifts)[nearest])
