@@ -1,4 +1,5 @@
-"""The edge length on bodies where a scene leaves it to the speeds that are expected: `mesh.size_body = "auto"`."""
+"""Edge lengths that a scene leaves to the domain, or to the speeds that are expected: `mesh.size = "auto"` and
+`mesh.size_body = "auto"`."""
 
 from __future__ import annotations
 
@@ -7,23 +8,34 @@ import numpy as np
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.mechanics.boundary_layer import CELLS_WANTED, boundary_layers
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
+from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.system import System
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.setup.assemble import assemble
 
 _EDGES_PER_DIAMETER = 10.0
+_EDGES_PER_WIDTH = 4.0
 _DIGITS = 3
+
+
+def auto_size(domain: Domain) -> float:
+    """Edge length far from bodies [length]: a quarter of the ``domain``'s least width."""
+    lower, upper = domain.extent
+    return _rounded(float(np.min(upper - lower)) / _EDGES_PER_WIDTH)
 
 
 def auto_size_body(scene: Scene) -> float:
     """Edge length on bodies [length]: half of the thinnest boundary layer d/√Re at the expected speeds, at most a tenth
-    of the diameter d of the smallest ball of equal volume, and at most the mesh's ``size``.
+    of the diameter d of the smallest ball of equal volume, and at most the mesh's ``size``; just that with an
+    ``accuracy``, by which layers are resolved.
 
     The scene needs a mesh; its ``size_body`` is not read.
     """
     assert scene.mesh is not None
     smallest = min((equal_volume_radius(shape) for shape in model_of(scene).shapes), default=np.inf)
     size = min(scene.mesh.size, 2.0 * smallest / _EDGES_PER_DIAMETER)
+    if scene.mesh.accuracy is not None:
+        return _rounded(size)
     fine = scene.model_copy(update={"mesh": scene.mesh.model_copy(update={"size_body": size})})
     return _rounded(min(size, _half_layer(assemble(model_of(fine)))))
 

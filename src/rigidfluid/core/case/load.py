@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rigidfluid.core.case.auto_size import auto_size_body
+from rigidfluid.core.case.auto_size import auto_size, auto_size_body
 from rigidfluid.core.case.boundary_table_checks import check_surface_names
 from rigidfluid.core.case.joint_kinds import read_drives
 from rigidfluid.core.case.mechanisms import placed_mechanisms
@@ -27,9 +27,12 @@ from rigidfluid.core.scene.toml_file import read_toml
 from rigidfluid.core.scene.validation import read_table
 from rigidfluid.core.setup.made_bodies import check_made_bodies, told_by_numbers
 from rigidfluid.core.setup.placed_bodies import PlacedBodies
-from rigidfluid.errors import ArgumentError
+from rigidfluid.errors import ArgumentError, SceneError
 from rigidfluid.registry import FLUID_BACKEND, Registry, missing_packages
 from rigidfluid.regular_file import path_of
+
+_ANY = 1.0
+"""Edge length in tables from which no mesh is made [length]."""
 
 if TYPE_CHECKING:
     from rigidfluid.core.seeding.seed import Occupied
@@ -69,6 +72,7 @@ def scene_of_results(data: Mapping[str, Any]) -> Scene:
 
     It is read like `scene_from_dict` does, but its backend may lack packages here, and then cannot run it.
     """
+    data = _with_size(data)
     if not _has_seeds(data):
         return _sized(data)
     from rigidfluid.core.case.swarms import told_by_swarms, with_seeded_bodies  # few scenes have swarms
@@ -105,6 +109,19 @@ def _sized(data: Mapping[str, Any]) -> Scene:
     if not _asks_for_size(data):
         return _checked(data)
     return _checked({**data, "mesh": {**data["mesh"], "size_body": auto_size_body(_checked(_with_any_size(data)))}})
+
+
+def _with_size(data: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Tables with cells as large as the domain allows, where an accuracy is to refine them; raises SceneError without
+    one."""
+    mesh = data.get("mesh")
+    if not isinstance(mesh, Mapping) or mesh.get("size") != AUTO:
+        return data
+    if "accuracy" not in mesh:
+        raise SceneError("mesh.size", repr(AUTO), "a number above 0 without `accuracy`", "Add accuracy = 0.05.")
+    scene = _tables(tables_now({**data, "mesh": {**mesh, "size": _ANY, "size_body": _ANY}}))
+    size = auto_size(scene_domain(scene.domain, Registry.load(), scene.dimension))
+    return {**data, "mesh": {"size_body": AUTO, **mesh, "size": size}}
 
 
 def _asks_for_size(data: Mapping[str, Any]) -> bool:

@@ -27,11 +27,28 @@ def node_gradients(points: FloatArray, values: FloatArray) -> FloatArray:
 
     Both are quadratic in the cell's own coordinates.
     """
-    slopes = _slopes(points.shape[2])
-    of_points = np.einsum("mbi,nbk->mnik", points, slopes)
-    of_values = np.einsum("mbi,nbk->mnik", values, slopes)
-    transposed = np.linalg.solve(of_points.swapaxes(2, 3), of_values.swapaxes(2, 3))
-    return np.asarray(transposed.swapaxes(2, 3))
+    return _along_slopes(values) @ _inverse(_along_slopes(points))
+
+
+def _along_slopes(values: FloatArray) -> FloatArray:
+    """Derivatives (M, b, c, d) of ``values`` (M, b, c) in the cells' own coordinates."""
+    cells, nodes, components = values.shape
+    slopes = _slopes(2 if nodes == 6 else 3)
+    by_node = slopes.transpose(1, 0, 2).reshape(nodes, -1)  # one product of matrices
+    found = (np.swapaxes(values, 1, 2).reshape(-1, nodes) @ by_node).reshape(cells, components, nodes, -1)
+    return np.asarray(np.swapaxes(found, 1, 2))
+
+
+def _inverse(matrices: FloatArray) -> FloatArray:
+    """Inverses of small ``matrices`` (…, d, d) by their cofactors."""
+    if matrices.shape[-1] == 2:
+        (a, b), (c, d) = np.moveaxis(matrices, (-2, -1), (0, 1))
+        adjugate, determinant = np.stack([np.stack([d, -b], -1), np.stack([-c, a], -1)], -2), a * d - b * c
+    else:
+        x, y, z = np.moveaxis(matrices, -2, 0)
+        adjugate = np.stack([np.cross(y, z), np.cross(z, x), np.cross(x, y)], axis=-1)
+        determinant = np.sum(x * adjugate[..., 0], axis=-1)
+    return np.asarray(adjugate / determinant[..., None, None])
 
 
 @cache
@@ -55,6 +72,7 @@ def _moments(count: int) -> FloatArray:
     return moments
 
 
+@cache
 def _slopes(dimension: int) -> FloatArray:
     """Derivatives (b, b, d) of the basis at the nodes: node, function, direction from the first corner to another."""
     corners, nodes = np.eye(dimension + 1), node_coordinates(dimension + 1)

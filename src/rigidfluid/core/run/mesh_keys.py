@@ -9,6 +9,7 @@ from rigidfluid.core.mesh.adaptation.mesh_adaptation import MeshUpdater, Renewal
 from rigidfluid.core.mesh.adaptation.no_mesh import NoMesh
 from rigidfluid.core.mesh.adaptation.updater import Updater
 from rigidfluid.core.mesh.generation.inserter import Inserter
+from rigidfluid.core.mesh.size.equidistribution import Equidistribution
 from rigidfluid.core.mesh.size.regions import RefinedBox, Region, curved_walls
 from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.mesh.size.size_interface import SizeField
@@ -37,15 +38,20 @@ def wakes_of(table: MeshTable, dimension: int) -> tuple[SizeField, ...]:
     return (Wake(table.wake.time, table.wake.size, table.growth, dimension),)
 
 
+def accuracy_of(table: MeshTable, dimension: int) -> Equidistribution | None:
+    """Size field of the accuracy, if the table asks for one."""
+    return None if table.accuracy is None else Equidistribution(table.accuracy, table.most_cells, dimension)
+
+
 def inserter_of(table: MeshTable) -> Inserter:
     """Way in which the bodies come into the first mesh."""
     return Inserter(table.inserter, table.mesher_timeout)
 
 
-def renewal_of(table: MeshTable, clock: Clock) -> Renewal:
+def renewal_of(table: MeshTable, clock: Clock, accuracy: Equidistribution | None) -> Renewal:
     """Conditions on which a mesh is regenerated; none is tried in the time of a whole step after a failure."""
     oldest = clock.tick_from(table.remesh_every) if table.remesh_every else np.inf
-    return Renewal(table.quality, clock.ticks(0), oldest)
+    return Renewal(table.quality, clock.ticks(0), oldest, accuracy)
 
 
 def updater_of(fluid: Fluid | NoFluid, system: System, clock: Clock, watch: Stopwatch) -> Updater:
@@ -53,5 +59,7 @@ def updater_of(fluid: Fluid | NoFluid, system: System, clock: Clock, watch: Stop
     table = fluid.mesh
     if table is None:
         return NoMesh(system)
-    sizes, wanted = sizes_of(table, system.domain), (*wakes_of(table, system.dimension), *fluid.size_fields)
-    return MeshUpdater(system, sizes, renewal_of(table, clock), wanted, inserter_of(table), watch)
+    accuracy = accuracy_of(table, system.dimension)
+    wanted = (*wakes_of(table, system.dimension), *fluid.size_fields, *([] if accuracy is None else [accuracy]))
+    renewal = renewal_of(table, clock, accuracy)
+    return MeshUpdater(system, sizes_of(table, system.domain), renewal, wanted, inserter_of(table), watch)

@@ -11,7 +11,7 @@ from rigidfluid.core.scene.vectors import Vector
 
 AUTO = "auto"
 """Stands in a file for a number that is computed when the scene is loaded."""
-SizeBody = Annotated[
+EdgeLength = Annotated[
     float, Field(gt=0), WithJsonSchema({"anyOf": [{"exclusiveMinimum": 0, "type": "number"}, {"const": AUTO}]})
 ]
 
@@ -46,10 +46,14 @@ class SizeFieldTable(OpenTable):
 class MeshTable(Table):
     """Resolution of the mesh, and when it is regenerated."""
 
-    size: Positive = Field(description="Edge length far from the bodies [length]")
-    size_body: SizeBody = Field(
+    size: EdgeLength = Field(
+        description="Edge length far from the bodies; `auto`, with `accuracy` alone: a quarter of the domain's least "
+        "width [length]"
+    )
+    size_body: EdgeLength = Field(
         description="Edge length on the bodies; `auto`: half of the thinnest boundary layer d/√Re at the expected "
-        "speeds, at most d/10, where d is the diameter of a ball of the body's volume [length]"
+        "speeds, at most d/10, where d is the diameter of a ball of the body's volume; with `accuracy` just that, "
+        "also if it is not given and `size` is `auto` [length]"
     )
     size_wall: Positive | None = Field(
         default=None,
@@ -84,6 +88,16 @@ class MeshTable(Table):
     )
     estimate: bool = Field(
         default=False, description="Record an estimate of the error that the mesh makes, of each step and in each cell"
+    )
+    accuracy: float | None = Field(
+        default=None,
+        gt=0,
+        lt=1,
+        description="Relative error of velocity gradients and pressure that the mesh may make; cells then follow its "
+        "estimate, as far as those that `size` and `size_body` ask for are coarser [1]",
+    )
+    most_cells: int = Field(
+        default=50_000, ge=100, le=10**9, description="About how many cells `accuracy` asks for at most [1]"
     )
     wake: WakeTable | None = Field(default=None, description="Finer cells behind moving bodies")
     refine: tuple[RefineTable, ...] = Field(default=(), description="Boxes with finer cells")

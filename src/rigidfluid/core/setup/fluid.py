@@ -82,7 +82,7 @@ class Fluid:
     @property
     def estimates_errors(self) -> bool:
         """Tell whether errors of cells are wanted."""
-        return self.mesh.estimate
+        return self.mesh.estimate or self.mesh.accuracy is not None
 
     @property
     def insertion(self) -> MeshTable:

@@ -194,9 +194,11 @@ def _check_stresslets(model: Model) -> None:
 def _check_estimate(model: Model) -> None:
     backend = model.fluid.backend.part
     if model.fluid.estimates_errors and not backend.cell_errors:
-        found = f"true with backend {backend.name!r}"
+        mesh = model.fluid.mesh
+        field = "mesh.estimate" if mesh is None or mesh.accuracy is None else "mesh.accuracy"
+        found = f"an estimate of errors with backend {backend.name!r}"
         remedy = "Use backend = 'scikit-fem', or leave it out."
-        raise SceneError("mesh.estimate", found, "a backend that gives errors of cells", remedy)
+        raise SceneError(field, found, "a backend that gives errors of cells", remedy)
 
 
 def _check_sensitivities(model: Model) -> None:

@@ -62,14 +62,14 @@ def cell_errors(flow: DiscreteFlow, material: Material) -> FloatArray:
     nodes, d = flow.numbering.cell_nodes, flow.numbering.dimension
     points = flow.points[nodes]
     gradient = node_gradients(points, flow.velocity[nodes])
-    divergence = np.trace(gradient, axis1=2, axis2=3)
+    divergence = np.einsum("mbii->mb", gradient)
     strain = gradient + gradient.swapaxes(2, 3)
     viscosity = material.viscosity(np.sqrt(0.5 * np.sum(strain**2, axis=(2, 3))).ravel()).reshape(divergence.shape)
     stress = viscosity[..., None, None] * strain
     stress -= flow.numbering.interpolate_to_nodes(flow.pressure)[nodes][..., None, None] * np.eye(d)
     forces = node_gradients(points, stress.reshape(*divergence.shape, d * d)).reshape(*stress.shape, d)
     residual = np.einsum("mbijj->mbi", forces) - flow.rate[nodes]
-    residual -= np.einsum("mbij,mbj->mbi", gradient, flow.momentum[nodes])
+    residual -= (gradient @ flow.momentum[nodes][..., None])[..., 0]
     mean, vertices = viscosity.mean(axis=1), flow.points[: flow.numbering.vertices]
     cells = flow.numbering.cells
     volume, longest = np.abs(cell_volumes(vertices, cells)), edge_lengths(vertices, cells).max(axis=1)
@@ -81,7 +81,7 @@ def cell_errors(flow: DiscreteFlow, material: Material) -> FloatArray:
 def _square(values: FloatArray, volume: FloatArray) -> FloatArray:
     """∫ |v|² over each cell (M,) of quadratic ``values`` (M, b, c)."""
     products = mean_products(3 if values.shape[1] == 6 else 4)
-    return np.asarray(volume * np.einsum("mac,ab,mbc->m", values, products, values, optimize=True))
+    return np.asarray(volume * np.sum(values * (products @ values), axis=(1, 2)))
 
 
 def _jumps(points: FloatArray, cells: IntArray, stress: FloatArray) -> FloatArray:

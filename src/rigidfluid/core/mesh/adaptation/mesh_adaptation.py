@@ -26,8 +26,10 @@ from rigidfluid.core.mesh.generation.curved_cells import CurvedCells
 from rigidfluid.core.mesh.generation.curved_edges import with_curved_edges
 from rigidfluid.core.mesh.generation.inserter import BY_SHAPE, Inserter
 from rigidfluid.core.mesh.mesh_quality import cell_quality
+from rigidfluid.core.mesh.size.equidistribution import Equidistribution
 from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.mesh.size.size_interface import SizeField, with_fields, with_fields_at_rest
+from rigidfluid.core.model.mesh_error import mesh_error
 from rigidfluid.core.model.replaceable import Replaceable
 from rigidfluid.core.model.state import FailedRemesh, Reference, State
 from rigidfluid.core.model.system import System
@@ -38,6 +40,9 @@ from rigidfluid.errors import MeshError, StepError, StepRejected
 TANGLED = 0.02
 """A mesh with a cell below this quality is not solved on."""
 
+SETTLED = 4
+"""Whole steps on a mesh before one is made for the sake of accuracy: a transferred flow errs more at first."""
+
 NEARLY_TANGLED = 2.0 * TANGLED
 """A moved mesh is regenerated before a cell tangles, however low a quality is asked for."""
 
@@ -47,13 +52,15 @@ class Renewal:
     """Conditions on which a mesh is regenerated.
 
     Its worst cell has fallen below ``quality``, or is nearly tangled, and below half of what it was when made; or it is
-    ``oldest`` ticks old. For ``pause`` ticks after a mesh could not be made, none is tried unless a cell is nearly
-    tangled.
+    ``oldest`` ticks old; or after some steps with it the cells that an ``accuracy`` demands, if there is one, differ so
+    much that a new one is worth it. For ``pause`` ticks, a whole step, after a mesh could not be made, none is tried
+    unless a cell is nearly tangled.
     """
 
     quality: float
     pause: int
     oldest: float = np.inf
+    accuracy: Equidistribution | None = None
 
 
 class MeshUpdater:
@@ -155,7 +162,7 @@ class MeshUpdater:
 
     def _remade(self, state: State, mesh: Mesh) -> Mesh:
         s, ranks, present = self.system, mesh.ranks, whole(mesh)
-        flow = flow_on(s.backend, state.fluid, mesh, state.twist) if self._fields else None
+        flow = flow_on(s.backend, state.fluid, mesh, state.twist, mesh_error(state)) if self._fields else None
         with ranks.raise_on_all():
             made = Mesh.empty(s.dimension)
             if present is not None:
@@ -188,6 +195,8 @@ class MeshUpdater:
         reference, sizes = state.reference, self._sizes
         if state.tick >= reference.tick + self._renewal.oldest:
             return True
+        if self._is_inaccurate(state):
+            return True
         if _gap_changed(reference.gaps, state.gaps, sizes).any():
             return True
         if _is_astray(self.system, reference.mesh, pose):
@@ -201,6 +210,13 @@ class MeshUpdater:
         around = fluid_domain_at(self.system, mesh.images_of(pose))
         now = relative_sizes(points, mesh.cells, around, sizes)
         return has_coarsened(self._sizes_when_made(reference, sizes), now, mesh.ranks)
+
+    def _is_inaccurate(self, state: State) -> bool:
+        """Tell whether other cells are worth it for the accuracy, of a mesh on which the flow has settled."""
+        accuracy, error, ticks = self._renewal.accuracy, mesh_error(state), SETTLED * self._renewal.pause
+        if accuracy is None or error is None or state.tick < state.reference.tick + ticks:
+            return False
+        return accuracy.is_due(error)
 
     def _sizes_when_made(self, reference: Reference, sizes: Sizes) -> FloatArray:
         """Relative sizes of the reference's cells, (M,), kept for the next look."""
