@@ -89,7 +89,7 @@ class History(Described):
         ----------
         name : str
             ``bodies``, ``contacts``, ``joints``, ``energy``, ``steps``, ``probes``, ``driving``, ``stresslets``,
-            ``scalar`` or ``scalar_fluxes``.
+            ``error_estimates``, ``scalar`` or ``scalar_fluxes``.
         only : iterable of str, optional
             The columns that are wanted; all if not given. A folder that an earlier version has written has all that it
             knew.
@@ -195,6 +195,11 @@ class History(Described):
     def stresslets(self) -> dict[str, NDArray[Any]]:
         """The table of stresslets.csv: a row per body and accepted step, with ``output.stresslets``."""
         return self.table("stresslets")
+
+    @property
+    def error_estimates(self) -> dict[str, NDArray[Any]]:
+        """The table of error_estimates.csv: a row per body and output, with ``output.error_bars``."""
+        return self.table("error_estimates")
 
     @property
     def scalar(self) -> dict[str, NDArray[Any]]:

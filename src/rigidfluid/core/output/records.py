@@ -24,6 +24,8 @@ LEDGER_COLUMNS = (
     *("dissipation", "grad_div_loss", "contact_loss", "transfer_loss", "path_friction", "residual"),
     *("residual_start", "residual_remeshing", "residual_contacts", "residual_mesh", "residual_steps"),
 )
+ESTIMATED, CAUSES = ("velocity", "angular_velocity", "force", "torque"), ("mesh", "steps")
+"""Quantities of bodies whose errors are estimated, and what these are by."""
 SCALAR_COLUMNS = ("content", "rate", "source", "imbalance", "least", "greatest", "remeshing")
 
 
@@ -44,6 +46,7 @@ def columns(dimension: int, coordinates: Iterable[str] = COORDINATES) -> dict[st
         "stresslets": ("time", "step", "body", *stresslet),
         "scalar": ("time", "step", *SCALAR_COLUMNS),
         "scalar_fluxes": ("time", "step", "surface", "flux", "value"),
+        "error_estimates": ("time", "step", "body", *estimate_columns(dimension)),
     }
 
 
@@ -61,6 +64,14 @@ def quantity_columns(dimension: int) -> dict[str, tuple[str, ...]]:
         "contact_force": _components("cf", dimension),
         "contact_torque": ("ct",) if two else _components("ct", dimension),
     }
+
+
+def estimate_columns(dimension: int) -> tuple[str, ...]:
+    """Columns of estimated errors: by the mesh and by the steps, of each column of twists and of the fluid's
+    wrenches."""
+    quantities = quantity_columns(dimension)
+    names = chain(*(quantities[name] for name in ESTIMATED))
+    return tuple(f"{name}_{cause}" for name in names for cause in CAUSES)
 
 
 def _components(name: str, dimension: int) -> tuple[str, ...]:
@@ -93,6 +104,7 @@ def records(
         "stresslets": list(_stresslet_rows(system, state, stamp)),
         "scalar": [] if state.scalar is None else [(*stamp, *(getattr(state.scalar, name) for name in SCALAR_COLUMNS))],
         "scalar_fluxes": list(_scalar_flux_rows(system, state, stamp)),
+        "error_estimates": [],
     }
 
 

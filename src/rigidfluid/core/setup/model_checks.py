@@ -190,6 +190,14 @@ def _check_stresslets(model: Model) -> None:
         raise SceneError("output.stresslets", found, "a backend that gives stresslets", remedy)
 
 
+def _check_error_bars(model: Model) -> None:
+    backend = model.fluid.backend.part
+    if model.output.error_bars and not backend.refinements:
+        found = f"true with backend {backend.name!r}"
+        remedy = "Use backend = 'scikit-fem', or leave it out."
+        raise SceneError("output.error_bars", found, "a backend that compares meshes", remedy)
+
+
 def _check_control(body: RigidBody, at: str) -> None:
     """A body moves freely, is fixed, or follows a prescription: one of them."""
     given = [key for key in ("velocity", "angular_velocity") if getattr(body, key) is not None]
@@ -249,6 +257,7 @@ _QUESTIONS: tuple[Callable[[Model], None], ...] = (
     _check_around,
     _check_probes,
     _check_stresslets,
+    _check_error_bars,
     check_laws,
     check_pair_forces,
 )
