@@ -142,27 +142,28 @@ def estimates(named: dict[str, list[Estimate]]) -> Figure:
 
 
 ABOUT = """
-`output.error_bars` estimates at each output [how wrong velocities and forces are](../results.md#error_estimatescsv). The
-estimate beside the true error:
+`output.error_bars` estimates at each output [how wrong velocities and forces are](../results.md#error_estimatescsv).
+The estimate beside the true error:
 
 {summary}
 
-The bars, by mesh and by steps together, hold the reference in {held} of {all} figures. In the picture the line through the
-corner is that of bars as large as the error; the dotted ones are at half of it and at three times as much.
+The bars, by mesh and by steps together, hold the reference in {held} of {all} figures. In the picture the line
+through the corner is that of bars as large as the error; the dotted ones are at half of it and at three times as
+much.
 
 ## Drag and lift of DFG 2D-1
 
-The steady flow of `scenes/dfg_cylinder.toml`, with the reference of John and Matthies (2001). On straight cells most of the
-error is that of the geometry.
+The steady flow of `scenes/dfg_cylinder.toml`, with the reference of John and Matthies (2001). On straight cells most
+of the error is that of the geometry.
 
 {cylinders}
 
 ## A falling disk
 
-`scenes/falling_disk.toml` with steps of 4 ms, compared with cells of .008 and steps of 1 ms. The errors of its start decay
-slowly: those by the steps are most of it on fine cells. The force on the disk is its mass times its acceleration. The estimate
-takes its errors to have grown evenly since the start, so its bar is too wide once the fall is almost steady. What new meshes
-have left in the flow is in no estimate by the mesh.
+`scenes/falling_disk.toml` with steps of 4 ms, compared with cells of .008 and steps of 1 ms. The errors of its start
+decay slowly: those by the steps are most of it on fine cells. The force on the disk is its mass times its
+acceleration. The estimate takes its errors to have grown evenly since the start, so its bar is too wide once the fall
+is almost steady. What new meshes have left in the flow is in no estimate by the mesh.
 
 {disks}
 """
