@@ -5,8 +5,8 @@ from __future__ import annotations
 import operator
 from abc import abstractmethod
 from collections.abc import Sequence
-from dataclasses import replace
-from typing import TYPE_CHECKING, ClassVar, final
+from dataclasses import fields, replace
+from typing import TYPE_CHECKING, ClassVar, TypeVar, final
 
 import numpy as np
 from pydantic import Field
@@ -15,7 +15,7 @@ from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.model.fluid_backend import Filling, FluidBackend
 from rigidfluid.core.model.part import PartOptions
-from rigidfluid.core.model.types import Advance, Fields, FluidState, Mesh, Pose, Response, Step, Twist
+from rigidfluid.core.model.types import Advance, Fields, FluidState, Mesh, Pose, Response, Step, Twist, Wrench
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.system.coupled import CoupledMatrix
 from rigidfluid.taylor_hood.system.discretisation import Discretisation
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from rigidfluid.taylor_hood.elements.sampling import Samples
     from rigidfluid.taylor_hood.stepping.scalar_step import ScalarAssembly, ScalarEquations
     from rigidfluid.taylor_hood.system.dimensionless import Dimensionless
+
+Vectors = TypeVar("Vectors", Twist, Wrench)
 
 _PROVISIONAL = 1e-5
 """Relative residual of steps that will be solved again."""
@@ -206,6 +208,20 @@ class TaylorHoodBackend(FluidBackend):
         return np.stack([through, surfaces.pressure_drops(fluid["pressure"])], axis=1)
 
     @final
+    def refinement(self, fluid: FluidState, mesh: Mesh, finer: Mesh, step: Step) -> tuple[Twist, Wrench]:
+        from rigidfluid.taylor_hood.stepping.refined_flow import prolonged, self_convected
+
+        def solved(place: Mesh, state: FluidState) -> Advance:
+            beside = type(self)(self.options, self.problem)  # the run's own factors stay as they are
+            target = beside._discretisation(place, step.prescribed)
+            on_mesh = on_mesh(replace(step, points=place.geometry), mesh)
+            return self_convected(target, state, place, on_mesh, self.options.tolerance)
+
+        there = prolonged(fluid, self.numbering_of(mesh), mesh, Numbering.from_mesh(finer), finer)
+        own, refined = solved(mesh, fluid), solved(finer, there)
+        return _difference(refined.twist, own.twist), _difference(refined.hydrodynamic_wrench, own.hydrodynamic_wrench)
+
+    @final
     def unknowns(self, mesh: Mesh, prescribed: BoolArray) -> int:
         return self._discretisation(mesh, prescribed).unknowns
 
@@ -329,6 +345,12 @@ class TaylorHoodBackend(FluidBackend):
         """A discretisation on this topology, whichever bodies are prescribed."""
         self.numbering_of(mesh)
         return self._projecting_discretisation(mesh) if self._latest is None else self._latest[1]
+
+
+def _difference(vectors: Vectors, others: Vectors) -> Vectors:
+    """Twists or wrenches less others."""
+    names = [each.name for each in fields(vectors)]
+    return replace(vectors, **{name: getattr(vectors, name) - getattr(others, name) for name in names})
 
 
 def on_mesh(step: Step, mesh: Mesh) -> Step:

@@ -18,10 +18,17 @@ def check_exchange(model: Model) -> None:
     """Raise SceneError or PluginError for sources and sinks that are wrong, or that bodies of the model cannot have."""
     with all_told() as ask:
         ask(require_changeable, model)
+        ask(_refuse_error_bars, model)
         for number, source in enumerate(model.source_tables):
             ask(_check_source, source, number, model)
         for number, sink in enumerate(model.sink_tables):
             ask(_check_sink, sink, f"sink.{number}", model)
+
+
+def _refuse_error_bars(model: Model) -> None:
+    if model.output.error_bars:
+        found = "true with bodies that enter or leave"
+        raise SceneError("output.error_bars", found, "false with sources and sinks", "Leave it out.")
 
 
 def _check_source(table: SourceTable, number: int, model: Model) -> None:

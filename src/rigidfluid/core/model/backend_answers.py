@@ -11,7 +11,7 @@ from rigidfluid.core.geometry.answers import refuse_no_number, refuse_other_rows
 from rigidfluid.core.geometry.value_types import describe
 from rigidfluid.core.geometry.wrong import Wrong
 from rigidfluid.core.model.scalar_account import ScalarAccount
-from rigidfluid.core.model.types import Advance, Fields, Response, Step, Twist
+from rigidfluid.core.model.types import Advance, Fields, Response, Step, Twist, Wrench
 
 _POWERS = ("boundary_power", "spurious_flux", "grad_div", "source_power")
 _ENERGIES = ("kinetic_energy", "dissipation", "dissipation_midway", *_POWERS)
@@ -53,14 +53,13 @@ def advance(answer: Any, part: Any, fluid: Any, mesh: Any, step: Step) -> None:
     refuse_others(answer, Advance)
     state(answer.fluid)
     _refuse_other_twist(answer.twist, step)
-    (count, d), k = step.pose.position.shape, step.mass_matrix.shape[1] - step.pose.position.shape[1]
-    refuse_other_rows(answer.hydrodynamic_wrench.force, (count, d), "force", shorter=True)
-    refuse_other_rows(answer.hydrodynamic_wrench.torque, (count, k), "torque", shorter=True)
+    _refuse_other_wrench(answer.hydrodynamic_wrench, step)
     refuse_other_rows(answer.link_force, step.links.rate.shape, "link_force", shorter=True)
     for name in _ENERGIES:
         refuse_no_number(getattr(answer, name), name, shorter=True)
     _refuse_negative(answer.kinetic_energy, "kinetic_energy")
     if step.stresslets and part.stresslets:
+        count, d = step.pose.position.shape
         refuse_other_rows(answer.stresslet, (count, d, d), "stresslet", shorter=True)
     if step.cell_errors and part.cell_errors and not step.provisional:
         refuse_other_rows(answer.cell_errors, (len(mesh.cells),), "cell_errors", shorter=True)
@@ -77,6 +76,13 @@ def _scalar_account(answer: Any, surfaces: int) -> None:
         refuse_no_number(getattr(answer, name), f"scalar.{name}", shorter=True)
     for name in ("flux", "value"):
         refuse_other_rows(getattr(answer, name), (surfaces,), f"scalar.{name}", shorter=True)
+
+
+def refinement(answer: Any, part: Any, fluid: Any, mesh: Any, finer: Any, step: Step) -> None:
+    """Refuse what is no difference of all twists and wrenches."""
+    _refuse_other_length(answer, 2)
+    _refuse_other_twist(answer[0], step)
+    _refuse_other_wrench(answer[1], step)
 
 
 def response(answer: Any, part: Any, fluid: Any, mesh: Any, step: Step, impulses: Any) -> None:
@@ -127,3 +133,10 @@ def _refuse_other_twist(twist: Any, step: Step) -> None:
     count, d = len(step.prescribed), step.pose.position.shape[1]
     refuse_other_rows(twist.velocity, (count, d), "velocity", shorter=True)
     refuse_other_rows(twist.angular_velocity, (count, step.mass_matrix.shape[1] - d), "angular velocity", shorter=True)
+
+
+def _refuse_other_wrench(wrench: Any, step: Step) -> None:
+    refuse_others(wrench, Wrench, "wrench")
+    (count, d), k = step.pose.position.shape, step.mass_matrix.shape[1] - step.pose.position.shape[1]
+    refuse_other_rows(wrench.force, (count, d), "force", shorter=True)
+    refuse_other_rows(wrench.torque, (count, k), "torque", shorter=True)

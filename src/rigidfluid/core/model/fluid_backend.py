@@ -19,7 +19,18 @@ from rigidfluid.core.model.extension import Extension, FactorisedExtension
 from rigidfluid.core.model.neighbour_step import NeighbourEnd, NeighbourPair, NeighbourStep
 from rigidfluid.core.model.part import Part, PartOptions
 from rigidfluid.core.model.ranks import ALONE, Ranks
-from rigidfluid.core.model.types import Advance, Fields, FluidState, Mesh, Pose, Response, SolverCost, Step, Twist
+from rigidfluid.core.model.types import (
+    Advance,
+    Fields,
+    FluidState,
+    Mesh,
+    Pose,
+    Response,
+    SolverCost,
+    Step,
+    Twist,
+    Wrench,
+)
 
 Filling = Callable[[FloatArray], tuple[BoolArray, FloatArray]]
 """Whether bodies have left each of some points (N, d), (N,), and the velocity (N, d) that they had there
@@ -64,6 +75,8 @@ class FluidBackend(Part):
     """Tell whether it gives errors of cells to a `Step` that wants them."""
     tangents: ClassVar[bool] = False
     """Tell whether it gives `neighbours` of a step, by which sensitivities are found."""
+    refinements: ClassVar[bool] = False
+    """Tell whether it tells by `refinement` what a finer mesh would change, for error bars."""
     state_format: ClassVar[str | None] = None
     """Name of the format of its state. Backends of one format resume each other's runs, and by `joined` and `cut` those
     of other numbers of ranks; None where neither can be."""
@@ -171,6 +184,16 @@ class FluidBackend(Part):
         """Flux into the domain [length^d/time] and mean excess of the pressure [force/length^(d-1)] at the first piece
         of each periodic pair, in the order of their numbers, (c, 2); of no pairs unless it has `held_fluxes`."""
         return np.zeros((0, 2))
+
+    @gives(backends.refinement)
+    def refinement(self, fluid: FluidState, mesh: Mesh, finer: Mesh, step: Step) -> tuple[Twist, Wrench]:
+        """Change of the twists of the motions and the wrenches on the bodies by the ``finer`` of two meshes, in a
+        ``step`` from ``fluid`` that convects with its own solution; asked of backends with `refinements` alone.
+
+        The vertices of the ``finer`` one are those of the ``mesh``, then the middles of its edges, in the order of
+        their vertices. Raises StepRejected where there is no such solution.
+        """
+        raise NotImplementedError
 
     @abstractmethod
     @gives(number(-1.0))

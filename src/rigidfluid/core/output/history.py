@@ -89,7 +89,7 @@ class History(Described):
         ----------
         name : str
             ``bodies``, ``contacts``, ``joints``, ``energy``, ``steps``, ``probes``, ``driving``, ``stresslets``,
-            ``mesh_error``, ``sensitivities``, ``scalar`` or ``scalar_fluxes``.
+            ``mesh_error``, ``sensitivities``, ``error_estimates``, ``scalar`` or ``scalar_fluxes``.
         only : iterable of str, optional
             The columns that are wanted; all if not given. A folder that an earlier version has written has all that it
             knew.
@@ -205,6 +205,11 @@ class History(Described):
     def sensitivities(self) -> dict[str, NDArray[Any]]:
         """The table of sensitivities.csv: a row per key in ``output.sensitivities``, body and accepted step."""
         return self.table("sensitivities")
+
+    @property
+    def error_estimates(self) -> dict[str, NDArray[Any]]:
+        """The table of error_estimates.csv: a row per body and output, with ``output.error_bars``."""
+        return self.table("error_estimates")
 
     @property
     def scalar(self) -> dict[str, NDArray[Any]]:

@@ -25,6 +25,8 @@ LEDGER_COLUMNS = (
     *("dissipation", "grad_div_loss", "contact_loss", "transfer_loss", "path_friction", "residual"),
     *("residual_start", "residual_remeshing", "residual_contacts", "residual_mesh", "residual_steps"),
 )
+ESTIMATED, CAUSES = ("velocity", "angular_velocity", "force", "torque"), ("mesh", "steps")
+"""Quantities of bodies whose errors are estimated, and what these are by."""
 SCALAR_COLUMNS = ("content", "rate", "source", "imbalance", "least", "greatest", "remeshing")
 
 
@@ -47,6 +49,7 @@ def columns(dimension: int, coordinates: Iterable[str] = COORDINATES) -> dict[st
         "sensitivities": ("time", "step", "parameter", "body", *_derivative_columns(dimension)),
         "scalar": ("time", "step", *SCALAR_COLUMNS),
         "scalar_fluxes": ("time", "step", "surface", "flux", "value"),
+        "error_estimates": ("time", "step", "body", *estimate_columns(dimension)),
     }
 
 
@@ -72,6 +75,14 @@ def _derivative_columns(dimension: int) -> Iterator[str]:
     if dimension == 3:
         quantities["orientation"] = _components("r", 3)
     return chain(*quantities.values())
+
+
+def estimate_columns(dimension: int) -> tuple[str, ...]:
+    """Columns of estimated errors: by the mesh and by the steps, of each column of twists and of the fluid's
+    wrenches."""
+    quantities = quantity_columns(dimension)
+    names = chain(*(quantities[name] for name in ESTIMATED))
+    return tuple(f"{name}_{cause}" for name in names for cause in CAUSES)
 
 
 def _components(name: str, dimension: int) -> tuple[str, ...]:
@@ -106,6 +117,7 @@ def records(
         "sensitivities": [],
         "scalar": [] if state.scalar is None else [(*stamp, *(getattr(state.scalar, name) for name in SCALAR_COLUMNS))],
         "scalar_fluxes": list(_scalar_flux_rows(system, state, stamp)),
+        "error_estimates": [],
     }
 
 

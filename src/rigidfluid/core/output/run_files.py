@@ -27,6 +27,7 @@ TABLES = {
     "sensitivities": "derivatives by the keys in `output.sensitivities`, a row per key and body",
     "scalar": "content, balance and extremes of the scalar of a table `[scalar]`",
     "scalar_fluxes": "its flux into the fluid and mean value on each body and each surface of the domain",
+    "error_estimates": "a row per body with `output.error_bars`",
 }
 """Names of a run's tables, and what is in each."""
 
@@ -57,8 +58,14 @@ _ADDED = (
     ),
 )
 
+
+def _written(table: str) -> str:
+    """When rows of a table are written."""
+    return "each `output.every`" if table == "error_estimates" else "each step"
+
+
 FILES = (
-    *(Files(f"`{name}.csv`", rf"{name}\.csv", "each step", content) for name, content in TABLES.items()),
+    *(Files(f"`{name}.csv`", rf"{name}\.csv", _written(name), content) for name, content in TABLES.items()),
     Files("`fields.pvd`", r"fields\.pvd(\.part)?", "each `output.every`", "the list of all in `fields/`, for ParaView"),
     Files(
         "`fields/000000.vtu`, …",

@@ -93,11 +93,11 @@ class Writer:
         return {name: table.written for name, table in self._tables.items()}
 
     def extend(self, records: Records) -> None:
-        """Append the rows of one state."""
+        """Append the rows of one state to their tables."""
         with self._ranks.raise_on_all():
-            for name, table in self._tables.items():
+            for name in records.keys() & self._tables.keys():
                 with writing(table_path(self.out, name)):
-                    table.extend(records[name])
+                    self._tables[name].extend(records[name])
 
     def output(self, fields: Fields | None, points: Mapping[str, PointSet], times: tuple[float, ...]) -> None:
         """Write what there is at the last of ``times``, fields if there are some and ``points`` by name, and the series

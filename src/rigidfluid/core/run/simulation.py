@@ -70,6 +70,7 @@ from rigidfluid.described import Described, first_names
 from rigidfluid.errors import ArgumentError, MeshError, OutputError, SceneError, StepError
 
 if TYPE_CHECKING:
+    from rigidfluid.core.run.error_bars import ErrorBars
     from rigidfluid.core.run.sensitivities import Sensitivities
 
 
@@ -123,6 +124,7 @@ class Simulation(Described):
         self._writer: Writer | None = None
         self._observers = Observers()
         self._sensitivities: Sensitivities | None = None
+        self._bars: ErrorBars | None = None
         try:
             with told_memory(), self._threads():
                 if earlier is None:
@@ -466,6 +468,15 @@ class Simulation(Described):
         self._writer = None if out is None else self._writer_to(out, None)
         self._record()
         self._output()
+        self._observe_outputs()
+
+    def _observe_outputs(self) -> None:
+        """Write outputs from now on, with error bars if they are wanted."""
+        if self.model.output.error_bars:
+            from rigidfluid.core.run.error_bars import ErrorBars  # few runs want them
+
+            self._bars = ErrorBars(self)
+            self.observe(self._bars.note)
         self.observe(Simulation._output, self.model.output.every)
 
     def _sensitivities_from_now(self) -> Sensitivities:
@@ -473,6 +484,16 @@ class Simulation(Described):
 
         tools = Tools(self.system, self.stepper.scheme, self.clock, self.mesh_updater, self.watch)
         return Sensitivities(self.model.document, tools, self.state, self.model.output.sensitivities)
+
+    def _estimate_errors(self) -> None:
+        """Add the rows of error bars in the present state, if they are wanted."""
+        if self._bars is None:
+            return
+        with self.watch("error bars"):
+            rows = {"error_estimates": self._bars.rows(self)}
+        self.history.extend(rows)
+        if self._writer is not None:
+            self._writer.extend(rows)
 
     def _rehearse(self) -> None:
         """Try the first step before an earlier run's results are replaced; a scene that cannot start leaves them."""
@@ -491,7 +512,7 @@ class Simulation(Described):
         if self.state.prescription is not None:
             self.stepper.system = following(self.system, PrescribedMotion(self.state.prescription))
         self._writer = self._writer_to(out, earlier)
-        self.observe(Simulation._output, self.model.output.every)
+        self._observe_outputs()
 
     def _writer_to(self, out: Path, earlier: Checkpoint | None) -> Writer:
         return Writer(out, self.model.dimension, earlier, self._ranks, joint_coordinates(self.system))
@@ -514,6 +535,7 @@ class Simulation(Described):
     def _output(self) -> None:
         """Write fields, points and a checkpoint; the backend is asked in any case: no result depends on writing."""
         self._times = (*self._times, self.time)
+        self._estimate_errors()
         memory = self.system.backend.memory()
         if self._writer is None:
             return

@@ -41,6 +41,7 @@ FIGURES = (
     *("time", "unknowns", "cells", "worst_quality", "ranks", "steps", "rejected_steps", "unsettled_steps", "remeshes"),
     *("failed_remeshes", "wall_time", "cpu_time", "wall_time_per_stage"),
     *("reynolds_solid_density", "reynolds", "smallest_gap", "rest_position", "cycles", "remesh_jumps", "energy"),
+    "error_estimates",
 )
 """Keys of summary.json that hold numbers of a run, or tables and lists of them."""
 ACCOUNT = ("at_hand", "round_off", "put_in", "created", "lost", "unaccounted", "grad_div")
@@ -93,6 +94,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         **({"population": simulation.population.to_dict()} if simulation.population else {}),
         **_mesh_errors(simulation.history),
         "remesh_jumps": jumps,
+        **_error_figures(simulation),
         "remarks": [asdict(remark) for remark in remarks],
         "energy": energy_balance(state.ledger, simulation.history.energy, account),
         "auto_epsilon": chosen_strengths(system),
@@ -110,6 +112,15 @@ def _mesh_errors(history: History) -> dict[str, Any]:
     """Latest and largest relative error of the mesh; empty where it was not estimated."""
     found = history.table("mesh_error", only=["relative"])["relative"]
     return {"mesh_error": {"latest": _finite(found[-1]), "largest": _finite(found.max())}} if len(found) else {}
+
+
+def _error_figures(simulation: Simulation) -> dict[str, Any]:
+    """Error bars, if the run has any."""
+    if not simulation.model.output.error_bars:
+        return {}
+    from rigidfluid.core.output.error_figures import error_figures  # few runs want them
+
+    return {"error_estimates": error_figures(simulation.history.error_estimates, simulation.model.dimension)}
 
 
 def _caller_values(state: State, system: System) -> dict[str, Any]:

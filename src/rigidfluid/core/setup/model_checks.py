@@ -223,6 +223,14 @@ def _without_derivatives(model: Model) -> str | None:
     return next((name for name, is_there in found.items() if is_there), None)
 
 
+def _check_error_bars(model: Model) -> None:
+    backend = model.fluid.backend.part
+    if model.output.error_bars and not backend.refinements:
+        found = f"true with backend {backend.name!r}"
+        remedy = "Use backend = 'scikit-fem', or leave it out."
+        raise SceneError("output.error_bars", found, "a backend that compares meshes", remedy)
+
+
 def _check_control(body: RigidBody, at: str) -> None:
     """A body moves freely, is fixed, or follows a prescription: one of them."""
     given = [key for key in ("velocity", "angular_velocity") if getattr(body, key) is not None]
@@ -284,6 +292,7 @@ _QUESTIONS: tuple[Callable[[Model], None], ...] = (
     _check_stresslets,
     _check_estimate,
     _check_sensitivities,
+    _check_error_bars,
     check_laws,
     check_pair_forces,
 )

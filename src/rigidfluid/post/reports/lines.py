@@ -10,6 +10,7 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.output.energy_account import energy_account, per_cent
 from rigidfluid.core.output.records import joint_coordinates
 from rigidfluid.post.reports.curves import add_legend, draw_bodies, widen
+from rigidfluid.post.reports.error_bars import draw_bars
 from rigidfluid.post.reports.paths import draw_paths
 from rigidfluid.post.reports.results import Results
 from rigidfluid.post.reports.style import (
@@ -60,6 +61,7 @@ def speed_plot(results: Results) -> Figure:
     reynolds = _reynolds_numbers(results, speed)
     figure, panels = time_panels(1 + len(reynolds))
     draw_bodies(panels[0], results.time, speed, results.names)
+    draw_bars(panels[0], results, "velocity")
     panels[0].set_ylabel("speed\n[length/time]")
     add_legend(figure)
     for axes, (whose, values) in zip(panels[1:], reynolds.items(), strict=True):
@@ -92,6 +94,7 @@ def force_plot(results: Results) -> Figure:
     fluid, contact = results.quantity("force"), results.quantity("contact_force")
     for k, (left, right) in enumerate(panels):
         draw_bodies(left, results.time, fluid[..., k], results.names)
+        draw_bars(left, results, "force", k)
         draw_bodies(right, results.time, contact[..., k], results.names)
         left.set_ylabel(f"{results.axes[k]}-force [force]")
         _draw_weight(left, right, results, k)

@@ -13,6 +13,7 @@ from rigidfluid.core.output.energy_account import per_cent
 from rigidfluid.core.output.verdict import verdict
 from rigidfluid.core.scene.scene_text import scene_text
 from rigidfluid.post.reports.coefficients import Figures
+from rigidfluid.post.reports.error_bars import error_table
 from rigidfluid.post.reports.html import document, file_list, grid, table, with_contents
 from rigidfluid.post.reports.results import Results
 
@@ -67,6 +68,7 @@ def page(
         *([table(_figures(summary)), *_cycles(summary.get("cycles", {}))] if summary else ()),
         *_changes(results),
         *_coefficients(coefficients),
+        *error_table(results, _MOST_BODIES),
         *others,
         "<h2>Pictures</h2>",
         *pictures,

@@ -11,10 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.halved_simplex import EDGES as EDGES
 from rigidfluid.core.model.types import Mesh
-
-# Edges of a simplex as pairs of its vertices, in the order of the nodes of VTK's quadratic cells.
-EDGES = {2: ((0, 1), (1, 2), (0, 2)), 3: ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))}
 
 
 class Numbering:

@@ -471,8 +471,8 @@ def test_figures_that_a_run_lacks(key: str, text: str, history: History) -> None
 
 def test_figures_are_keys_of_the_summary() -> None:
     summary = rigidfluid.run(rigidfluid.load_scene(SCENES / "dry_bounce.toml", ["time.end=2e-5"])).summary
-    of_mechanisms = {"cycles"}
-    assert set(FIGURES) - of_mechanisms == {key for key, value in summary.items() if not isinstance(value, str)} - {
+    of_few_scenes = {"cycles", "error_estimates"}
+    assert set(FIGURES) - of_few_scenes == {key for key, value in summary.items() if not isinstance(value, str)} - {
         "scene", "seed", "versions", "files", "auto_epsilon", "peak_memory", "latest_failed_remesh", "remarks"
     }  # fmt: skip
 

@@ -1,0 +1,169 @@
+"""Error bars beside true errors: drag and lift of DFG 2D-1, a falling disk, and a sphere that settles in oil."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.figure import Figure
+from page_tools import Page, Work, table
+
+from rigidfluid.core.output.history import History
+
+BARS = "output.error_bars=true"
+DRAG, LIFT = 5.57953523384, 0.010618948146
+"""Coefficients of DFG 2D-1, converged (John and Matthies 2001)."""
+COEFFICIENT = 500.0
+"""Over the force, 2/(ρ Ū² 2R)."""
+CYLINDERS = ((0.0196, 2), (0.0098, 2), (0.0049, 2), (0.0196, 1), (0.0098, 1), (0.0049, 1))
+"""Edges on the cylinder [m], and the order of its cells."""
+DISKS, SHORTER, TIMES = ((0.4, 0.06), (0.3, 0.03), (0.2, 0.016)), 4, (0.04, 0.08, 0.16, 0.24)
+"""Cells far from the disk and on it [cm], how many times shorter steps the finest run has, and times [s]."""
+FALL = ("time.end=0.24", "output.every=0.04")
+
+
+class Estimate(NamedTuple):
+    """A ``figure`` of a ``case``: its ``true`` error, and those that are estimated by the ``mesh`` and by the
+    ``steps``."""
+
+    case: str
+    figure: str
+    value: float
+    true: float
+    mesh: float
+    steps: float
+
+    @property
+    def effectivity(self) -> float:
+        """The estimated error over the true one [1]."""
+        return (self.mesh + self.steps) / self.true
+
+    @property
+    def holds(self) -> bool:
+        """Tell whether the bar holds the reference."""
+        return abs(self.true) <= abs(self.mesh) + abs(self.steps)
+
+
+def page(work: Work) -> Page:
+    """Estimates beside true errors, and how many references the bars hold."""
+    steady, falling = list(of_cylinders(work)), list(of_disks(work))
+    found = steady + falling
+    named = {
+        "Drag and lift": steady,
+        "Speed of a disk": [each for each in falling if each.figure.startswith("speed")],
+        "Force on it": [each for each in falling if each.figure.startswith("force")],
+    }
+    text = ABOUT.format(
+        summary=table(("figures", "number", "held", "effectivity", "between .5 and 3"), summaries(named)),
+        held=sum(each.holds for each in found),
+        all=len(found),
+        cylinders=table(COLUMNS, map(row, steady)),
+        disks=table(COLUMNS, map(row, falling)),
+    )
+    return Page("Error bars beside true errors", text, {"": estimates(named)})
+
+
+def of_cylinders(work: Work) -> Iterator[Estimate]:
+    """Coefficients of DFG 2D-1 on coarse meshes of curved and of straight cells."""
+    for size, order in CYLINDERS:
+        growth, far = (0.2, 0.04) if size > 0.01 else (0.1, 0.02)
+        mesh = [f"mesh.size_body={size}", f"mesh.order={order}", f"mesh.growth={growth}", f"mesh.size={far}"]
+        settled = ["fluid.initial=steady", "time.end=0.3", "output.every=0.3", BARS]
+        history = work.run(f"cylinder_{size:g}_order_{order}", "dfg_cylinder.toml", mesh + settled).history
+        case = f"cells of {size:g}, {'curved' if order == 2 else 'straight'}"
+        for name, column, reference in (("drag", "fx", DRAG), ("lift", "fy", LIFT)):
+            yield estimate(history, case, name, (column, 0.3), reference, COEFFICIENT)
+
+
+def of_disks(work: Work) -> Iterator[Estimate]:
+    """Speed of and force on a falling disk, compared with a run on finer cells in shorter steps."""
+    step = 0.004
+    finest = ["mesh.size=0.1", "mesh.size_body=0.008", f"time.step={step / SHORTER}", *FALL]
+    reference = work.run("disk_finest", "falling_disk.toml", finest).history.bodies
+    for far, size in DISKS:
+        mesh = [f"mesh.size={far}", f"mesh.size_body={size}", f"time.step={step}", *FALL, BARS]
+        history = work.run(f"disk_{size:g}", "falling_disk.toml", mesh).history
+        for time in TIMES:
+            for name, column in (("speed", "vy"), ("force", "fy")):
+                known = reference[column][np.argmin(abs(reference["time"] - time))]
+                yield estimate(history, f"cells of {size:g}", f"{name} at {time:g}", (column, time), known)
+
+
+def estimate(
+    history: History, case: str, figure: str, place: tuple[str, float], reference: float, scale: float = 1.0
+) -> Estimate:
+    """The estimate of a column at a time, its ``place``, beside what a ``reference`` makes of it; ``scale`` times."""
+    column, time = place
+    bodies, errors = history.bodies, history.error_estimates
+    value = scale * bodies[column][np.argmin(abs(bodies["time"] - time))]
+    output = np.argmin(abs(errors["time"] - time))
+    by_mesh, by_steps = (scale * errors[f"{column}_{cause}"][output] for cause in ("mesh", "steps"))
+    return Estimate(case, figure, value, reference - value, by_mesh, by_steps)
+
+
+COLUMNS = ("mesh", "figure", "value", "true error", "by the mesh", "by the steps", "effectivity", "held")
+
+
+def row(found: Estimate) -> tuple[str, ...]:
+    """A row of the tables."""
+    errors = (f"{each:.2g}" for each in (found.true, found.mesh, found.steps))
+    return (
+        *(found.case, found.figure, f"{found.value:.6g}", *errors),
+        *(f"{found.effectivity:.2f}", "yes" if found.holds else "no"),
+    )
+
+
+def summaries(named: dict[str, list[Estimate]]) -> Iterator[tuple[str, ...]]:
+    """How many are held, and how good they are, by subject."""
+    for name, found in named.items():
+        ratios = np.array([abs(each.effectivity) for each in found])
+        good = int(((ratios >= 0.5) & (ratios <= 3.0)).sum())
+        median, held = f"{np.median(ratios):.2f} in the middle", sum(each.holds for each in found)
+        yield name, str(len(found)), str(held), median, str(good)
+
+
+def estimates(named: dict[str, list[Estimate]]) -> Figure:
+    """Error bars over true errors."""
+    figure = Figure(figsize=(6.0, 5.0), dpi=120, layout="constrained")
+    axes = figure.add_subplot(xlabel="true error, relative", ylabel="error bar, relative", xscale="log", yscale="log")
+    for name, found in named.items():
+        true, bar = (
+            np.array([abs(error / each.value) for each, error in zip(found, errors, strict=True)])
+            for errors in ([each.true for each in found], [abs(each.mesh) + abs(each.steps) for each in found])
+        )
+        axes.plot(true, bar, "o", label=name)
+    ends = np.array(axes.get_xlim())
+    for factor, style in ((0.5, ":"), (1.0, "-"), (3.0, ":")):
+        axes.plot(ends, factor * ends, style, color="black", linewidth=0.8)
+    axes.set_xlim(*ends)
+    axes.legend()
+    return figure
+
+
+ABOUT = """
+`output.error_bars` estimates at each output [how wrong velocities and forces are](../results.md#error_estimatescsv).
+The estimate beside the true error:
+
+{summary}
+
+The bars, by mesh and by steps together, hold the reference in {held} of {all} figures. In the picture the line
+through the corner is that of bars as large as the error; the dotted ones are at half of it and at three times as
+much.
+
+## Drag and lift of DFG 2D-1
+
+The steady flow of `scenes/dfg_cylinder.toml`, with the reference of John and Matthies (2001). On straight cells most
+of the error is that of the geometry.
+
+{cylinders}
+
+## A falling disk
+
+`scenes/falling_disk.toml` with steps of 4 ms, compared with cells of .008 and steps of 1 ms. The errors of its start
+decay slowly: those by the steps are most of it on fine cells. The force on the disk is its mass times its
+acceleration. The estimate takes its errors to have grown evenly since the start, so its bar is too wide once the fall
+is almost steady. What new meshes have left in the flow is in no estimate by the mesh.
+
+{disks}
+"""

@@ -1,0 +1,90 @@
+"""Errors of the bodies' velocities and of the fluid's wrenches: by the mesh, and by the steps."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.mechanics.wrenches import flat
+from rigidfluid.core.output.records import Row, moving
+from rigidfluid.core.run.mesh_error import mesh_error, moving_rows
+from rigidfluid.errors import MeshError, StepError, StepRejected
+
+if TYPE_CHECKING:
+    from rigidfluid.core.run.simulation import Simulation
+
+LOOSEST = 0.1
+"""Largest tolerance of a step's error that scenes may ask for [1]."""
+
+LONGER = 2
+"""How many times longer the steps of the run beside are; a tolerance is the square of that looser."""
+
+
+class ErrorBars:
+    """Estimates of a run's errors at its outputs, as corrections: added to what the run has, they give what it should
+    have.
+
+    The error by the steps is a third of the difference from a run beside it in twice as long ones, that by the mesh
+    is `mesh_error`. Not a number where nothing is known.
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._beside = _with_longer_steps(simulation)
+        self._own = {simulation.time: _values(simulation)}
+        self._other = {self._beside.time: _values(self._beside)}
+        self._beside.observe(lambda beside: self._other.update({beside.time: _values(beside)}))
+
+    def note(self, simulation: Simulation) -> None:
+        """Keep the values of a state, and of the one before it, which the run beside may have reached too."""
+        self._own = {**dict([*self._own.items()][-1:]), simulation.time: _values(simulation)}
+
+    def rows(self, simulation: Simulation) -> list[Row]:
+        """A row for each body and mechanism in the present state; none at the start."""
+        if simulation.state.past is None:
+            return []
+        names, stamp = moving(simulation.system), (simulation.time, simulation.state.count)
+        errors = np.stack([self._mesh_errors(simulation), self._step_errors(simulation)], axis=-1)
+        return [(*stamp, name, *row) for name, row in zip(names, errors.reshape(len(names), -1).tolist(), strict=True)]
+
+    def _mesh_errors(self, simulation: Simulation) -> FloatArray:
+        try:
+            return mesh_error(simulation.system, simulation.state, simulation.time)
+        except (StepRejected, MeshError):
+            return np.full_like(_values(simulation), np.nan)
+
+    def _step_errors(self, simulation: Simulation) -> FloatArray:
+        state, unknown = simulation.state, np.full_like(_values(simulation), np.nan)
+        others = moving(self._beside.system) != moving(simulation.system)
+        if others or state.prescription is not None or state.applied is not None:
+            return unknown  # the run beside knows nothing of it
+        try:
+            self._beside.go(simulation.time)
+        except StepError:
+            return unknown
+        common = [time for time in self._own.keys() & self._other.keys() if time <= simulation.time]
+        if not common:
+            return unknown
+        latest = max(common)
+        return (self._own[latest] - self._other[latest]) / (LONGER**2 - 1)
+
+
+def _with_longer_steps(simulation: Simulation) -> Simulation:
+    """The same run in memory, from its start, in steps of twice the length, which no end cuts short."""
+    model = simulation.model
+    time = model.time
+    step, shortest = LONGER * time.step, LONGER * time.shortest
+    tolerance = None if time.tolerance is None else min(LONGER**2 * time.tolerance, LOOSEST)
+    changed = {"step": step, "shortest": shortest, "tolerance": tolerance, "end": LONGER * time.end}
+    output = model.output.model_copy(update={"error_bars": False, "every": max(model.output.every, step), "probes": ()})
+    return type(simulation)(replace(model, time=time.model_copy(update=changed), output=output))
+
+
+def _values(simulation: Simulation) -> FloatArray:
+    """Twist and wrench of each body and mechanism, (r, 2(d+k))."""
+    state = simulation.state
+    bodies = np.concatenate([flat(state.twist), flat(state.hydrodynamic_wrench)], axis=1)
+    motions = np.concatenate([flat(state.motions.twist), flat(state.motions.hydrodynamic)], axis=1)
+    return moving_rows(simulation.system, bodies, motions)

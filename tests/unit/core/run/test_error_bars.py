@@ -1,0 +1,106 @@
+"""Error bars: estimates beside true errors, columns, resumption, and what refuses them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from falling import SCENES
+from scenes import wet_tables
+
+import rigidfluid
+from rigidfluid.api import FluidBackend, Simulation, model_of
+from rigidfluid.backends.scikit_fem import ScikitFem
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.errors import SceneError
+
+COARSE = ("mesh.size=0.05", "mesh.size_body=0.02", "time.step=1.0", "time.end=2.0", "output.every=2.0")
+DRAG, LIFT = 5.57953523384, 0.010618948146
+"""Coefficients of DFG 2D-1, converged (John and Matthies 2001)."""
+
+
+def falling(**tables):
+    disk = {"name": "disk", "type": "sphere", "radius": 0.1, "density": 1.5, "position": [0.5, 0.5]}
+    common = {"fluid": {"gravity": [0.0, -1.0]}, "output": {"every": 0.1, "error_bars": True}}
+    return scene_from_dict(wet_tables(disk, end=0.2, step=0.02, **(common | tables)))
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_the_mesh_estimate_is_the_true_error_of_drag_and_lift(order: int) -> None:
+    """On straight cells most of it is the error of the geometry."""
+    wanted = ["fluid.initial=steady", "output.error_bars=true", f"mesh.order={order}", *COARSE]
+    history = rigidfluid.run(rigidfluid.load_scene(SCENES / "dfg_cylinder.toml", wanted))
+    for name, reference in (("fx", DRAG), ("fy", LIFT)):
+        missing = reference / 500.0 - history.bodies[name][-1]
+        assert 0.9 < history.error_estimates[f"{name}_mesh"][-1] / missing < 1.4
+        assert abs(history.error_estimates[f"{name}_steps"][-1]) < 1e-6 * DRAG
+
+
+def test_estimates_lead_from_coarse_cells_and_long_steps_to_finer_and_shorter_ones() -> None:
+    """Steps of a quarter and cells of a half leave a fourteenth and at most a quarter of the errors."""
+    coarse = rigidfluid.run(falling(mesh={"size": 0.2, "size_body": 0.06}))
+    short = falling(mesh={"size": 0.2, "size_body": 0.06}, time={"step": 0.005})
+    fine = falling(mesh={"size": 0.1, "size_body": 0.03})
+    here = coarse.bodies["vy"][-1]
+    by_steps, by_mesh = (rigidfluid.run(one).bodies["vy"][-1] - here for one in (short, fine))
+    found = coarse.error_estimates
+    assert 0.5 < found["vy_steps"][-1] / by_steps < 3.0
+    assert 0.5 < found["vy_mesh"][-1] / by_mesh < 3.0
+
+
+def test_estimates_change_nothing_and_are_resumed_to_the_last_bit(tmp_path: Path) -> None:
+    rigidfluid.run(falling(), tmp_path / "whole")
+    rigidfluid.run(falling(time={"end": 0.1}), tmp_path / "parts")
+    rigidfluid.run(falling(), tmp_path / "parts", resume=True)
+    without = rigidfluid.run(falling(output={"error_bars": False}), tmp_path / "without")
+    for name in ("error_estimates", "bodies"):
+        whole, parts = ((tmp_path / folder / f"{name}.csv").read_bytes() for folder in ("whole", "parts"))
+        assert whole == parts
+    assert whole == (tmp_path / "without" / "bodies.csv").read_bytes()
+    assert len(without.error_estimates["time"]) == 0
+
+
+def test_a_velocity_that_is_given_has_no_error_and_its_force_has_one() -> None:
+    moved = {"name": "disk", "type": "sphere", "radius": 0.1, "density": 1.5, "position": [0.5, 0.5]}
+    tables = wet_tables(moved | {"prescribed": {"velocity": [0.0, 1.0]}}, end=0.1, step=0.02)
+    found = rigidfluid.run(scene_from_dict(tables | {"output": {"every": 0.1, "error_bars": True}})).error_estimates
+    assert not any(found[f"{name}_{cause}"].any() for name in ("vx", "vy", "w") for cause in ("mesh", "steps"))
+    assert found["fy_mesh"].all()
+
+
+def test_what_a_caller_does_to_bodies_leaves_the_error_by_steps_unknown() -> None:
+    simulation = Simulation(model_of(falling()))
+    simulation.apply("disk", force=[0.1, 0.0])
+    simulation.go()
+    assert np.isnan(simulation.history.error_estimates["vy_steps"]).all()
+    assert np.isfinite(simulation.history.error_estimates["vy_mesh"]).all()
+
+
+def test_a_backend_without_them_is_refused_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ScikitFem, "refinements", FluidBackend.refinements)
+    with pytest.raises(SceneError, match=r"output.error_bars: found true with backend 'scikit-fem'"):
+        model_of(falling())
+
+
+def test_bodies_that_leave_are_refused() -> None:
+    with pytest.raises(SceneError, match=r"output.error_bars: found true with bodies that enter or leave"):
+        model_of(falling(sink=[{"on": "bottom"}]))
+
+
+def test_other_bodies_leave_the_error_by_steps_unknown() -> None:
+    simulation = Simulation(model_of(falling()))
+    simulation.add({"name": "other", "type": "sphere", "radius": 0.1, "density": 1.0, "position": [0.2, 0.2]})
+    simulation.go(0.1)
+    found = simulation.history.error_estimates
+    assert found["body"].tolist() == ["disk", "other"]
+    assert np.isnan(found["vy_steps"]).all()
+    assert np.isfinite(found["vy_mesh"]).all()
+
+
+def test_the_summary_has_the_latest_and_the_greatest() -> None:
+    history = rigidfluid.run(falling())
+    table, found = history.error_estimates, history.summary["error_estimates"]["disk"]["velocity"]
+    sizes = np.hypot(table["vx_mesh"], table["vy_mesh"])
+    assert (found["mesh"], found["greatest_mesh"]) == pytest.approx((sizes[-1], sizes.max()))
+    assert found["steps"] > 0.0
