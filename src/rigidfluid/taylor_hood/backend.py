@@ -214,8 +214,8 @@ class TaylorHoodBackend(FluidBackend):
         def solved(place: Mesh, state: FluidState) -> Advance:
             beside = type(self)(self.options, self.problem)  # the run's own factors stay as they are
             target = beside._discretisation(place, step.prescribed)
-            on_mesh = on_mesh(replace(step, points=place.geometry), mesh)
-            return self_convected(target, state, place, on_mesh, self.options.tolerance)
+            placed = on_mesh(replace(step, points=place.geometry), mesh)
+            return self_convected(target, state, place, placed, self.options.tolerance)
 
         there = prolonged(fluid, self.numbering_of(mesh), mesh, Numbering.from_mesh(finer), finer)
         own, refined = solved(mesh, fluid), solved(finer, there)
