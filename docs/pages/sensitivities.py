@@ -12,13 +12,14 @@ from page_tools import Page, Run, Work, table
 SHARE = 1e-4
 """Half the difference of the values of two runs, relative to the value."""
 
-COLUMNS = {"y": "place", "vy": "velocity", "fy": "force"}
-"""Columns that are compared, and their names."""
+QUANTITIES = ("place", "velocity", "force")
+"""Quantities that are compared, in the order of a case's columns."""
 
 
 @dataclass(frozen=True)
 class Case:
-    """A ``scene`` cut short by ``overrides``, and the ``keys`` with their values in it."""
+    """A ``scene`` cut short by ``overrides``, the ``keys`` with their values in it, and the ``columns`` of the first
+    body that are compared."""
 
     title: str
     scene: str
@@ -42,6 +43,13 @@ CASES = {
         {"body.0.prescribed.amplitude.1": 0.01, "body.0.prescribed.frequency": 5.0, "fluid.viscosity": 0.1},
         ("y", "vy", "fy"),
     ),
+    "bounce": Case(
+        "two disks collide without a fluid",
+        "dry_bounce.toml",
+        ("time.end=0.008",),
+        {"contact.epsilon": 1e-8, "body.1.density": 1.0, "body.0.velocity.0": 20.0},
+        ("x", "vx", "cfx"),
+    ),
 }
 """Cases by the first word of their folders."""
 
@@ -53,16 +61,19 @@ class Compared:
         self.case = case
         keys = ", ".join(f"'{key}'" for key in case.keys)
         self.watched = work.run(f"{name}_watched", case.scene, [*case.overrides, f"output.sensitivities=[{keys}]"])
+        self.plain = work.run(f"{name}_plain", case.scene, case.overrides)
         self.pairs = {key: _pair(work, f"{name}_{key}", case, key) for key in case.keys}
 
     def derivative(self, key: str, column: str) -> np.ndarray:
         """Derivative over time as the run tells it, from its first step on."""
         rows = self.watched.history.sensitivities
-        return np.asarray(rows[column][rows["parameter"] == key][-len(self.times) :])
+        chosen = (rows["parameter"] == key) & (rows["body"] == self.body)
+        return np.asarray(rows[column][chosen][-len(self.times) :])
 
     def difference(self, key: str, column: str) -> np.ndarray:
         """The same by the difference of two runs."""
-        plus, minus = (run.history.bodies[column] for run in self.pairs[key])
+        tables = (run.history.bodies for run in self.pairs[key])
+        plus, minus = (bodies[column][bodies["body"] == self.body] for bodies in tables)
         return np.asarray((plus - minus)[1:] / (2.0 * SHARE * self.case.keys[key]))
 
     @property
@@ -70,17 +81,26 @@ class Compared:
         """Ends of the steps."""
         return np.asarray(self.watched.history.steps["time"])
 
-    def error(self, key: str, column: str) -> float:
-        """Greatest difference of both in the last half of the steps, over the greatest derivative [1]."""
-        found, expected = self.derivative(key, column), self.difference(key, column)
-        return float(np.abs(found - expected)[len(found) // 2 :].max() / np.abs(expected).max())
+    @property
+    def body(self) -> str:
+        """Name of the first body."""
+        return str(self.watched.history.bodies["body"][0])
+
+    def errors(self, key: str) -> list[float]:
+        """Greatest difference of both in the last half of the steps, over the greatest derivative [1]; NaN of what does
+        not depend on the key."""
+        found = []
+        for column in self.case.columns:
+            told, expected = self.derivative(key, column), self.difference(key, column)
+            most = np.abs(expected).max()
+            found.append(np.abs(told - expected)[len(told) // 2 :].max() / most if most > 0.0 else np.nan)
+        return found
 
     @property
     def cost(self) -> float:
-        """Time of a step's derivatives by one key over that of the step itself [1]."""
-        seconds = self.watched.summary["seconds"]
-        step = sum(seconds.get(stage, 0.0) for stage in ("response", "contact", "move mesh", "detect", "advance"))
-        return float(seconds["sensitivities"] / len(self.case.keys) / step)
+        """CPU time that each key adds to the run, over that of the run without any [1]."""
+        plain = self.plain.cpu_seconds
+        return (self.watched.cpu_seconds - plain) / (len(self.case.keys) * plain)
 
 
 def _pair(work: Work, label: str, case: Case, key: str) -> tuple[Run, Run]:
@@ -96,23 +116,29 @@ def _pair(work: Work, label: str, case: Case, key: str) -> tuple[Run, Run]:
 def page(work: Work) -> Page:
     """Derivatives over time, and a table of their errors and costs."""
     found = [Compared(work, name, case) for name, case in CASES.items()]
-    errors = [one.error(key, column) for one in found for key in one.case.keys for column in one.case.columns]
+    errors = [error for one in found for key in one.case.keys for error in one.errors(key)]
     rows = [row for one in found for row in _rows(one)]
-    head = ("", "key", *(f"error of the {name}'s" for name in COLUMNS.values()), "steps", "cost of a key over a step's")
-    text = ABOUT.format(table=table(head, rows), greatest=max(errors), share=SHARE)
+    head = (
+        "",
+        "key",
+        *(f"error of the {name}'s" for name in QUANTITIES),
+        "steps",
+        "cost of a key over the run's",
+    )
+    text = ABOUT.format(table=table(head, rows), greatest=np.nanmax(errors), share=SHARE)
     return Page("Derivatives by values of a scene", text, {"": plot(found[0])})
 
 
 def _rows(one: Compared) -> Iterable[tuple[str, ...]]:
     for key in one.case.keys:
-        errors = (f"{one.error(key, column):.1e}" for column in COLUMNS)
+        errors = ("none" if np.isnan(error) else f"{error:.1e}" for error in one.errors(key))
         yield one.case.title, f"`{key}`", *errors, f"{len(one.times)}", f"{one.cost:.2f}"
 
 
 def plot(one: Compared) -> Figure:
     """Elasticities of place and velocity over time, by the run and by differences."""
     figure = Figure(figsize=(9.0, 4.0), dpi=120, layout="constrained")
-    for axes, (column, name) in zip(figure.subplots(1, 2), list(COLUMNS.items())[:2], strict=True):
+    for axes, (column, name) in zip(figure.subplots(1, 2), zip(one.case.columns, QUANTITIES), strict=False):
         for key, value in one.case.keys.items():
             (line,) = axes.plot(one.times, value * one.derivative(key, column), label=key)
             axes.plot(
@@ -123,12 +149,14 @@ def plot(one: Compared) -> Figure:
     return figure
 
 
-ABOUT = """`output.sensitivities` compared with differences of whole runs, whose value p of the key differs by ±{share:g} of it
-and whose systems are solved to 1e-12; the runs with derivatives are solved to the usual 1e-9. Errors are the greatest in the last half of
-the steps, over the greatest derivative in the run. In the figure lines are the run's derivatives by each key, times its value; circles are differences.
+ABOUT = """`output.sensitivities` compared with differences of whole runs, whose value p of the key differs by
+±{share:g} of it, and whose systems are solved to 1e-12; the runs with derivatives are solved to the usual 1e-9. Errors
+are the greatest in the last half of the steps, over the greatest derivative in the run. In the figure lines are
+derivatives by the run, each times the value of its key; circles are differences. What is prescribed depends on no
+viscosity ("none").
 
 {table}
 
-The greatest error is {greatest:.1e}. Seconds of a step are those of moving the mesh, detecting and solving; derivatives by one key
-take the given share of them, where two runs take two. How they are found, and where they end, is in
+The greatest error is {greatest:.1e}. The cost is the CPU time that each key adds, over that of the same run without
+derivatives; a difference of two runs costs 2. How derivatives are found, and where they end, is in
 [decision 111](../decisions/111-sensitivities.md)."""

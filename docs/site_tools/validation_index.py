@@ -74,6 +74,7 @@ SUBJECTS = {
         "work_precision": "The falling disk: error against CPU time, compared with NGSolve and OpenFOAM",
         "backends_study": "Fluid backends: error against CPU time",
         "backends": "The cost of a step with each backend, part by part",
+        "sensitivities": "Derivatives by values of a scene: compared with differences of runs, and their cost",
         "adaptive_step": "Steps by a tolerance: when they pay",
         "step": "One step compared with the same step in NGSolve",
         "contact_step": "What a step with contacts costs",

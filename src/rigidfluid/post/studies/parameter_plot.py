@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rigidfluid.post.reports.curves import escape_dollars
-from rigidfluid.post.reports.style import new_figure
+from rigidfluid.post.reports.style import BLACK, new_figure
 from rigidfluid.post.studies.lines import draw_lines, scale_axis, settings_words
 from rigidfluid.post.studies.plot import error_label
 from rigidfluid.post.studies.results import Results
@@ -29,6 +30,7 @@ def parameter_plot(results: Results) -> Figure:
     panels = figure.subplots(2 if errors else 1, 1, sharex=True, squeeze=False)[:, 0]
     shown = _draw(panels[0], results, figures)
     panels[0].set_ylabel(escape_dollars(results.target.figure_label))
+    _draw_slopes(panels[0], results)
     if errors:
         _draw(panels[1], results, errors)
         panels[1].set_yscale("log")
@@ -50,6 +52,20 @@ def _draw(axes: Axes, results: Results, values: Mapping[str, float]) -> list[Art
             name = tuple(filter(None, names)) or ("runs",)
             lines.setdefault(name, []).append((places[text_of(settings[first])], values[key]))
     return draw_lines(axes, {name: sorted(points) for name, points in lines.items()})
+
+
+def _draw_slopes(axes: Axes, results: Results) -> None:
+    """Draw the tangent of the figure at each run that knows it, a quarter of the way to the next values."""
+    first = results.study.parameters[0]
+    values = results.study.values(first)
+    if not _are_numbers(values) or len(values) < 2:
+        return
+    half = 0.25 * float(np.diff(np.sort(values)).min())
+    for key, settings in zip(results.prints, results.plan, strict=True):
+        outcome = results.outcomes.get(key)
+        if outcome is not None and outcome.slope is not None:
+            ends = np.array([-half, half])
+            axes.plot(settings[first] + ends, outcome.figure + outcome.slope * ends, color=BLACK, linewidth=2.0)
 
 
 def _are_numbers(values: list[Any]) -> bool:

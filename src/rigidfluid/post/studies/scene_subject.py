@@ -18,6 +18,7 @@ from rigidfluid.post.reports.units import Units
 from rigidfluid.post.studies.figure import check_figure, read_figure
 from rigidfluid.post.studies.model import ErrorTable, Study
 from rigidfluid.post.studies.quantities import figure_unit, key_unit
+from rigidfluid.post.studies.slope import read_slope
 from rigidfluid.post.studies.strict_table import Settings
 from rigidfluid.post.studies.subject import Outcome, Target
 
@@ -33,6 +34,7 @@ class SceneSubject:
         assert study.tables.error is not None
         self._fixed = study.tables.set
         self._figure = study.tables.error.figure
+        self._parameters = study.parameters
         self._clock = study.tables.study.timed_by
         self._data = read_toml(study.scene)
         self._warm: set[str] = set()
@@ -57,7 +59,8 @@ class SceneSubject:
         history = simulate(scene, progress=lambda now: progress(now.time / now.end))
         summary = history.summary
         figure = read_figure(self._figure, history)
-        return Outcome(figure, summary[f"{self._clock}_time"], summary["unknowns"], summary["steps"])
+        slope = read_slope(self._figure, history, next(iter(self._parameters), None))
+        return Outcome(figure, summary[f"{self._clock}_time"], summary["unknowns"], summary["steps"], slope)
 
     def _tables(self, settings: Settings) -> dict[str, Any]:
         tables = deepcopy(self._data)

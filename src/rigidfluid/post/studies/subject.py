@@ -11,12 +11,14 @@ from rigidfluid.post.studies.strict_table import Settings
 
 @dataclass(frozen=True)
 class Outcome:
-    """Outcome of one run: the ``figure``, ``seconds`` by the study's clock, ``unknowns`` of a step and ``steps``."""
+    """Outcome of one run: the ``figure``, ``seconds`` by the study's clock, ``unknowns`` of a step and ``steps``, and
+    the ``slope`` of the figure over the first parameter, None where that is not known."""
 
     figure: float
     seconds: float
     unknowns: int
     steps: int
+    slope: float | None = None
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from rigidfluid.post.studies.results import Results
 from rigidfluid.post.studies.rows import FAILED, Row, cells
 from rigidfluid.post.studies.subject import Outcome
 
-_RESULTS = ("figure", "error", "seconds", "unknowns", "steps", "status", "message", "identity")
+_RESULTS = ("figure", "error", "seconds", "unknowns", "steps", "slope", "status", "message", "identity")
 
 
 def write_rows(path: Path, results: Results) -> None:
@@ -44,9 +44,9 @@ def write_grid(path: Path, grid: tuple[Iterable[str], Iterable[Iterable[object]]
 
 def _results(row: Row, error: float | None) -> list[object]:
     if row.outcome is None:
-        return ["", "", "", "", "", row.status, row.message]
+        return ["", "", "", "", "", "", row.status, row.message]
     outcome = row.outcome
-    return [outcome.figure, error, outcome.seconds, outcome.unknowns, outcome.steps, row.status, ""]
+    return [outcome.figure, error, outcome.seconds, outcome.unknowns, outcome.steps, outcome.slope, row.status, ""]
 
 
 def read_rows(path: Path) -> dict[str, Row]:
@@ -66,4 +66,5 @@ def _row(line: Mapping[str, str]) -> Row:
     if line["status"] == FAILED:
         return Row(None, line["message"])
     whole = (int(line[name]) for name in ("unknowns", "steps"))
-    return Row(Outcome(float(line["figure"]), float(line["seconds"]), *whole))
+    slope = line.get("slope")  # earlier versions have no such column
+    return Row(Outcome(float(line["figure"]), float(line["seconds"]), *whole, float(slope) if slope else None))

@@ -6,15 +6,20 @@ import csv
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from falling_study import check_refusal, command, falling_study
 
+from rigidfluid.api import run
 from rigidfluid.errors import SceneError
 from rigidfluid.post.studies import load_study, run_study
+from rigidfluid.post.studies.model import FigureTable
 from rigidfluid.post.studies.parameter_plot import parameter_plot
 from rigidfluid.post.studies.results import Results
 from rigidfluid.post.studies.scene_subject import SceneSubject
+from rigidfluid.post.studies.slope import read_slope
 from rigidfluid.post.studies.subject import Outcome
+from rigidfluid.post.studies.table import read_rows
 
 GRAVITY = "[parameters]\nfluid.gravity.1 = [-20.0, -10.0]\n"
 STEPS = "[vary]\ntime.step = [0.25, 0.125]\n"
@@ -135,3 +140,39 @@ def test_kernels_have_no_physical_parameters(tmp_path: Path) -> None:
     path = tmp_path / "kernel.toml"
     path.write_text('[study]\nname = "gaps"\nkernel = "detector"\n[parameters]\nbodies = [2, 3]\n')
     assert "parameters: found a table; allowed is nothing with study.kernel. Call it [vary]." in command(path).stderr
+
+
+SLOPES = '[set]\noutput.sensitivities = ["fluid.gravity.1"]\n'
+
+
+def test_slopes_are_drawn_where_runs_have_derivatives(tmp_path: Path) -> None:
+    results = results_of(falling_study(tmp_path, SLOPES + GRAVITY))
+    assert [float(row["slope"]) for row in rows(tmp_path / "out")] == pytest.approx([1 / 8] * 2, rel=1e-6)
+    drawn = parameter_plot(results).axes[0].lines[-2:]
+    rises = [np.ptp(line.get_ydata()) / np.ptp(line.get_xdata()) for line in drawn]
+    assert rises == pytest.approx([1 / 8] * 2, rel=1e-6)
+    assert len(parameter_plot(results).axes[0].lines) == 3
+    again = read_rows(tmp_path / "out" / "study.csv")
+    assert [row.outcome.slope for row in again.values() if row.outcome] == [o.slope for o in results.outcomes.values()]
+
+
+def test_slopes_are_left_out_where_runs_have_none(tmp_path: Path) -> None:
+    results = results_of(falling_study(tmp_path, GRAVITY))
+    assert [row["slope"] for row in rows(tmp_path / "out")] == ["", ""]
+    assert len(parameter_plot(results).axes[0].lines) == 1
+
+
+@pytest.mark.parametrize(
+    ("figure", "slope"),
+    [
+        ({"column": "vy", "extreme": "lowest"}, 0.5),
+        ({"column": "y", "extreme": "highest"}, 0.0),
+        ({"column": "vy", "at": 0.3}, 0.3),
+        ({"column": "gap", "at": 0.3}, None),
+    ],
+)
+def test_slopes_are_those_at_the_time_of_the_figure(tmp_path: Path, figure: dict[str, Any], slope: Any) -> None:
+    results = results_of(falling_study(tmp_path, SLOPES + GRAVITY))
+    scene = SceneSubject(results.study)._scene({"fluid.gravity.1": -10.0})
+    found = read_slope(FigureTable(table="bodies", **figure), run(scene), "fluid.gravity.1")
+    assert found == (slope if slope is None else pytest.approx(slope, rel=1e-6, abs=1e-9))
