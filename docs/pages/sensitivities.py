@@ -138,7 +138,7 @@ def _rows(one: Compared) -> Iterable[tuple[str, ...]]:
 def plot(one: Compared) -> Figure:
     """Elasticities of place and velocity over time, by the run and by differences."""
     figure = Figure(figsize=(9.0, 4.0), dpi=120, layout="constrained")
-    for axes, (column, name) in zip(figure.subplots(1, 2), zip(one.case.columns, QUANTITIES), strict=False):
+    for axes, column, name in zip(figure.subplots(1, 2), one.case.columns[:2], QUANTITIES[:2], strict=True):
         for key, value in one.case.keys.items():
             (line,) = axes.plot(one.times, value * one.derivative(key, column), label=key)
             axes.plot(

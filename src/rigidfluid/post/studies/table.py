@@ -65,6 +65,7 @@ def read_rows(path: Path) -> dict[str, Row]:
 def _row(line: Mapping[str, str]) -> Row:
     if line["status"] == FAILED:
         return Row(None, line["message"])
-    whole = (int(line[name]) for name in ("unknowns", "steps"))
     slope = line.get("slope")  # earlier versions have no such column
-    return Row(Outcome(float(line["figure"]), float(line["seconds"]), *whole, float(slope) if slope else None))
+    figure, seconds = float(line["figure"]), float(line["seconds"])
+    unknowns, steps = int(line["unknowns"]), int(line["steps"])
+    return Row(Outcome(figure, seconds, unknowns, steps, float(slope) if slope else None))
