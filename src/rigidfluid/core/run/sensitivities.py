@@ -70,7 +70,7 @@ class Sensitivities:
         if system is not self._tools.system or before is not self._latest:
             return "the run was changed from outside"
         if after.reference is not before.reference:
-            return "the mesh was made anew"
+            return "the domain was re-meshed"
         if after.coupling is not None:
             return "bodies in the fluid were near contacts"
         return None
