@@ -1,4 +1,4 @@
-"""What a run keeps of its states: rows of each one, and fields, points and a checkpoint at its outputs."""
+"""Records of a run: rows of each state, and fields, points and a checkpoint at each output."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Recorder:
 
     @property
     def folder(self) -> Path | None:
-        """Where the run is written to, None where it is kept in memory."""
+        """Folder of the results, None of a run in memory."""
         return None if self._writer is None else self._writer.out
 
     @property

@@ -151,7 +151,7 @@ def driven_elsewhere(simulation: Simulation) -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "reason"), [(remade, "mesh was made anew"), (driven_elsewhere, "changed from outside")]
+    ("change", "reason"), [(remade, "domain was re-meshed"), (driven_elsewhere, "changed from outside")]
 )
 def test_derivatives_end_where_there_are_none(change: Any, reason: str) -> None:
     simulation = gone(started(wet(DISK | {"prescribed": {"velocity": [0.1, 0.0]}}), "fluid.viscosity"), FEW)
