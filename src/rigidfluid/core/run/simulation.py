@@ -304,8 +304,8 @@ class Simulation(Described):
     def add(self, body: Mapping[str, object]) -> None:
         """Let a body enter, from now on: in a fluid, in the place of what was there.
 
-        The domain is re-meshed around all bodies, the flow is the nearest to the one before that goes with the body, and
-        steps are as short as after a start. Energy that comes with the body is in the column ``exchange`` of the
+        The domain is re-meshed around all bodies, the flow is the nearest to the one before that goes with the body,
+        and steps are as short as after a start. Energy that comes with the body is in the column ``exchange`` of the
         energies.
 
         Parameters
