@@ -46,7 +46,7 @@ def followed(tools: Tools, before: State, after: State, pairs: Sequence[Pair]) -
     if tools.system.has_fluid and before.coupling is None and after.coupling is None:
         states = step.neighbour_states(sides)
     else:
-        states = [side.stepper.at_level(side.state, after.level) for side in sides]
+        states = [side.stepper.whole_step(side.state, after.level) for side in sides]
     moved = [side._replace(state=state) for side, state in zip(sides, states, strict=True)]
     return list(zip(moved[::2], moved[1::2], strict=True))
 

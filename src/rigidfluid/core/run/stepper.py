@@ -118,7 +118,7 @@ class Stepper:
                     spot_check(self.system, new.pose, new.mesh, new.count)
                 return with_cause(self.system, self._clock, state, new)
 
-    def at_level(self, state: State, level: int) -> State:
+    def whole_step(self, state: State, level: int) -> State:
         """State one step of this level later on the same mesh, if that can be; raises StepRejected if not."""
         return self._tried(state, level, self._path(state, level))[0]
 
