@@ -58,7 +58,7 @@ def test_cells_are_no_more_than_the_most() -> None:
     error = EstimatedError(np.full(32, 1.0 / 32), 1.0)
     kept = wanted(mesh, error, Equidistribution(1e-4, 32, 2), mesh.points)
     assert kept == pytest.approx(wanted(mesh, error, Equidistribution(1.0 / 0.8, 10**6, 2), mesh.points))
-    assert not Equidistribution(1e-4, 32, 2).is_due(error)
+    assert not Equidistribution(1e-4, 32, 2).is_due(error, 100.0)
 
 
 def test_no_cells_of_other_sizes_are_fewer() -> None:
@@ -76,15 +76,20 @@ def test_nothing_is_asked_for_without_an_error() -> None:
     unknown = [None, EstimatedError(np.zeros(32), 1.0), EstimatedError(np.ones(32), 0.0)]
     for error in unknown:
         assert wanted(mesh, error, field, mesh.points).tolist() == [around(2).width] * len(mesh.points)
-        assert error is None or not field.is_due(error)
+        assert error is None or not field.is_due(error, 100.0)
     assert field.edge_length(mesh.points, around(2), AtRest(1, 2)).tolist() == [around(2).width] * len(mesh.points)
 
 
 def test_another_mesh_is_made_where_it_is_worth_it() -> None:
-    """With equal errors, of 10 %: for one half of it, and for four times it, and not for what is nearly there."""
+    """With equal errors, of 10 %: for half of it, and for four times it, but not for what is nearly there, and where
+    cells may not grow."""
     error = EstimatedError(np.full(100, 0.01), 100.0)
-    due = {accuracy: Equidistribution(accuracy, 10**6, 2).is_due(error) for accuracy in (0.05, 0.0999, 0.12, 0.4)}
+    fields = {accuracy: Equidistribution(accuracy, 10**6, 2) for accuracy in (0.05, 0.0999, 0.12, 0.4)}
+    due = {accuracy: field.is_due(error, 100.0) for accuracy, field in fields.items()}
     assert due == {0.05: True, 0.0999: True, 0.12: False, 0.4: True}
+    assert not fields[0.4].is_due(error, 100.0, np.ones(100))
+    assert [fields[0.4].is_due(error, age) for age in (19.0, 20.0)] == [False, True]
+    assert [fields[0.05].is_due(error, age) for age in (3.0, 4.0)] == [False, True]
 
 
 def channel(**mesh: Any) -> Scene:

@@ -24,6 +24,11 @@ _WORTH = 1.25
 """Ratio of errors, or of numbers of cells, from which another mesh is worth it."""
 
 
+SETTLED, LASTING = 4.0, 20.0
+"""Whole steps on a mesh before another is made for a smaller error, and for fewer cells: a transferred flow errs more
+at first, and not all cells may become larger."""
+
+
 class Equidistribution(SizeField):
     r"""Size field of `mesh.accuracy`: cells of equal errors, as few as have the relative error ``accuracy`` [1]
     together, and about ``most_cells`` at most.
@@ -54,13 +59,14 @@ class Equidistribution(SizeField):
         wanted = np.log(flow.cell_edges * self._changes(error))
         return np.asarray(np.minimum(np.exp(flow.from_cells(wanted, points)), longest))
 
-    def is_due(self, error: EstimatedError) -> bool:
-        """Tell whether a new mesh would have an ``error`` so much smaller, or so much fewer cells, that it is worth
-        it."""
-        if not 0.0 < error.relative < np.inf:
+    def is_due(self, error: EstimatedError, age: float, room: FloatArray | float = np.inf) -> bool:
+        """Tell whether a mesh of so many whole steps' ``age`` is worth another, whose ``error`` or number of cells is so
+        much smaller; edges of cells may grow by the factors ``room`` (M,) [1] at most."""
+        misses = error.relative > self.accuracy
+        if age < (SETTLED if misses else LASTING) or not 0.0 < error.relative < np.inf:
             return False
-        changes = self._changes(error)
-        if error.relative > self.accuracy:
+        changes = np.minimum(self._changes(error), room)
+        if misses:
             return _WORTH**2 * float(error.cells @ changes ** (2.0 * _ORDER)) < error.total
         return _WORTH * float(np.sum(changes**-self.dimension)) < len(changes)
 
