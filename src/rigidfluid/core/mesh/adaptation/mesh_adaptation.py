@@ -27,7 +27,7 @@ from rigidfluid.core.mesh.generation.curved_edges import with_curved_edges
 from rigidfluid.core.mesh.generation.inserter import BY_SHAPE, Inserter
 from rigidfluid.core.mesh.mesh_quality import cell_quality, regular_edges
 from rigidfluid.core.mesh.size.equidistribution import Equidistribution
-from rigidfluid.core.mesh.size.size_field import Sizes, size_away_from_gaps
+from rigidfluid.core.mesh.size.size_field import Sizes, wanted_size
 from rigidfluid.core.mesh.size.size_interface import SizeField, with_fields, with_fields_at_rest
 from rigidfluid.core.model.mesh_error import mesh_error
 from rigidfluid.core.model.replaceable import Replaceable
@@ -210,12 +210,14 @@ class MeshUpdater:
 
     def _is_inaccurate(self, state: State) -> bool:
         """Tell whether other cells are worth it for the accuracy, as large as all other sizes let them be."""
-        accuracy, error, mesh = self._renewal.accuracy, mesh_error(state), state.mesh
+        accuracy = self._renewal.accuracy
+        error = None if accuracy is None else mesh_error(state)
         age = (state.tick - state.reference.tick) / self._renewal.pause
         if accuracy is None or error is None or not accuracy.is_due(error, age):
             return False
+        mesh = state.mesh
         around = fluid_domain_at(self.system, mesh.images_of(state.pose))
-        others = size_away_from_gaps(mesh.points[mesh.cells].mean(axis=1), around, self._sizes)
+        others = wanted_size(mesh.points[mesh.cells].mean(axis=1), around, self._sizes)
         return accuracy.is_due(error, age, np.maximum(others / regular_edges(mesh.points, mesh.cells), 1.0))
 
     def _sizes_when_made(self, reference: Reference, sizes: Sizes) -> FloatArray:
