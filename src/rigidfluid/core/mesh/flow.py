@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from functools import cached_property
-from math import factorial
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.curl import curl
 from rigidfluid.core.mesh.distribution import whole
 from rigidfluid.core.mesh.location import CellFinder
-from rigidfluid.core.mesh.mesh_quality import cell_volumes
+from rigidfluid.core.mesh.mesh_quality import cell_volumes, regular_edges
 from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.model.mesh_error import EstimatedError
 from rigidfluid.core.model.types import FluidState, Mesh, Twist
@@ -142,9 +141,7 @@ class FlowOnMesh(Flow):
     @property
     def cell_edges(self) -> FloatArray:
         """Edges of regular cells of the same volumes, (M,) [length]."""
-        d = self._mesh.points.shape[1]
-        regular = np.sqrt(d + 1.0) / (2.0 ** (0.5 * d) * factorial(d))  # volume of a simplex of edges 1
-        return np.asarray((np.abs(cell_volumes(self._mesh.points, self._mesh.cells)) / regular) ** (1.0 / d))
+        return regular_edges(self._mesh.points, self._mesh.cells)
 
     def from_cells(self, values: FloatArray, points: FloatArray) -> FloatArray:
         """Values (m,) linear between means (N,) of ``values`` (M,) at the vertices, by volume."""

@@ -42,6 +42,13 @@ def edge_lengths(points: FloatArray, cells: IntArray) -> FloatArray:
     return np.asarray(np.linalg.norm(points[cells[:, second]] - points[cells[:, first]], axis=-1))
 
 
+def regular_edges(points: FloatArray, cells: IntArray) -> FloatArray:
+    """Edge of a regular simplex of the volume of each one, (M,) [length]."""
+    d = cells.shape[1] - 1
+    regular = np.sqrt(d + 1.0) / (2.0 ** (0.5 * d) * factorial(d))
+    return np.asarray((np.abs(cell_volumes(points, cells)) / regular) ** (1.0 / d))
+
+
 def _corners(points: FloatArray, cells: IntArray) -> FloatArray:
     """Coordinates by corner and component, (d+1, d, M), each a contiguous row."""
     return np.ascontiguousarray(points.T)[:, cells.T].swapaxes(0, 1)

@@ -22,8 +22,8 @@ from rigidfluid.core.mesh.adaptation.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation.inserter import Inserter
 from rigidfluid.core.mesh.generation.periodic import with_exact_images
-from rigidfluid.core.mesh.generation.refine_surface import LONGEST, long_edges
-from rigidfluid.core.mesh.size.size_field import Sizes
+from rigidfluid.core.mesh.generation.refine_surface import long_edges
+from rigidfluid.core.mesh.size.size_field import LONGEST, Sizes
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.output.checkpoint import read_checkpoint
 from rigidfluid.core.run.run import run

@@ -7,9 +7,8 @@ from mesh_tools import ball, box, box_walls, upright
 from rigidfluid.checks import check
 from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.generation.refine_surface import LONGEST
 from rigidfluid.core.mesh.size.regions import RefinedBox, RefinedCapsule, curved_walls
-from rigidfluid.core.mesh.size.size_field import Sizes, wanted_size
+from rigidfluid.core.mesh.size.size_field import LONGEST, Sizes, wanted_size
 from rigidfluid.core.mesh.size.wake import Wake
 from rigidfluid.core.model.types import Twist
 from rigidfluid.core.run.simulation import Simulation

@@ -26,9 +26,9 @@ from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation import refine_surface as surface
 from rigidfluid.core.mesh.generation.meshing import generate_mesh
 from rigidfluid.core.mesh.generation.refine_films import refine_films
-from rigidfluid.core.mesh.generation.refine_surface import LONGEST, long_edges, refine_surface
+from rigidfluid.core.mesh.generation.refine_surface import long_edges, refine_surface
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
-from rigidfluid.core.mesh.size.size_field import ALONG_FILM, Sizes, wanted_size
+from rigidfluid.core.mesh.size.size_field import ALONG_FILM, LONGEST, Sizes, wanted_size
 from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.errors import MeshError
 

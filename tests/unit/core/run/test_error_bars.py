@@ -104,3 +104,13 @@ def test_the_summary_has_the_latest_and_the_greatest() -> None:
     sizes = np.hypot(table["vx_mesh"], table["vy_mesh"])
     assert (found["mesh"], found["greatest_mesh"]) == pytest.approx((sizes[-1], sizes.max()))
     assert found["steps"] > 0.0
+
+
+def test_cells_that_follow_an_accuracy_have_estimates_too_and_are_the_same_with_them() -> None:
+    mesh = {"size": "auto", "size_body": "auto", "accuracy": 0.02}
+    found, without = (rigidfluid.run(falling(mesh=mesh, output={"error_bars": bars})) for bars in (True, False))
+    assert found.summary["remeshes"] == without.summary["remeshes"] >= 1
+    for name in ("vy", "fy"):
+        np.testing.assert_array_equal(found.bodies[name], without.bodies[name])
+        assert np.isfinite(found.error_estimates[f"{name}_mesh"]).all()
+        assert np.isfinite(found.error_estimates[f"{name}_steps"]).all()

@@ -18,9 +18,9 @@ from rigidfluid.core.mesh.adaptation.smooth_cut import smooth_cut
 from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation.periodic import Seams, on_periodic_surfaces
-from rigidfluid.core.mesh.generation.refine_surface import LONGEST, bisect, edges_of_facets, one_per_cell
+from rigidfluid.core.mesh.generation.refine_surface import bisect, edges_of_facets, one_per_cell
 from rigidfluid.core.mesh.mesh_quality import cell_quality
-from rigidfluid.core.mesh.size.size_field import Sizes, wanted_size
+from rigidfluid.core.mesh.size.size_field import LONGEST, Sizes, wanted_size
 from rigidfluid.core.mesh.topology import distinct_edges
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.types import Mesh, Periods

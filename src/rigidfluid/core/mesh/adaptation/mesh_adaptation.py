@@ -25,9 +25,9 @@ from rigidfluid.core.mesh.generation.coarsen_surface import coarsen_surface
 from rigidfluid.core.mesh.generation.curved_cells import CurvedCells
 from rigidfluid.core.mesh.generation.curved_edges import with_curved_edges
 from rigidfluid.core.mesh.generation.inserter import BY_SHAPE, Inserter
-from rigidfluid.core.mesh.mesh_quality import cell_quality
+from rigidfluid.core.mesh.mesh_quality import cell_quality, regular_edges
 from rigidfluid.core.mesh.size.equidistribution import Equidistribution
-from rigidfluid.core.mesh.size.size_field import Sizes
+from rigidfluid.core.mesh.size.size_field import Sizes, wanted_size
 from rigidfluid.core.mesh.size.size_interface import SizeField, with_fields, with_fields_at_rest
 from rigidfluid.core.model.mesh_error import mesh_error
 from rigidfluid.core.model.replaceable import Replaceable
@@ -39,9 +39,6 @@ from rigidfluid.errors import MeshError, StepError, StepRejected
 
 TANGLED = 0.02
 """A mesh with a cell below this quality is not solved on."""
-
-SETTLED = 4
-"""Whole steps on a mesh before one is made for the sake of accuracy: a transferred flow errs more at first."""
 
 NEARLY_TANGLED = 2.0 * TANGLED
 """A moved mesh is regenerated before a cell tangles, however low a quality is asked for."""
@@ -212,11 +209,16 @@ class MeshUpdater:
         return has_coarsened(self._sizes_when_made(reference, sizes), now, mesh.ranks)
 
     def _is_inaccurate(self, state: State) -> bool:
-        """Tell whether other cells are worth it for the accuracy, of a mesh on which the flow has settled."""
-        accuracy, error, ticks = self._renewal.accuracy, mesh_error(state), SETTLED * self._renewal.pause
-        if accuracy is None or error is None or state.tick < state.reference.tick + ticks:
+        """Tell whether other cells are worth it for the accuracy, as large as all other sizes let them be."""
+        accuracy = self._renewal.accuracy
+        error = None if accuracy is None else mesh_error(state)
+        age = (state.tick - state.reference.tick) / self._renewal.pause
+        if accuracy is None or error is None or not accuracy.is_due(error, age):
             return False
-        return accuracy.is_due(error)
+        mesh = state.mesh
+        around = fluid_domain_at(self.system, mesh.images_of(state.pose))
+        others = wanted_size(mesh.points[mesh.cells].mean(axis=1), around, self._sizes)
+        return accuracy.is_due(error, age, np.maximum(others / regular_edges(mesh.points, mesh.cells), 1.0))
 
     def _sizes_when_made(self, reference: Reference, sizes: Sizes) -> FloatArray:
         """Relative sizes of the reference's cells, (M,), kept for the next look."""

@@ -20,9 +20,9 @@ from rigidfluid.core.mesh.generation.fill import fill_mesh
 from rigidfluid.core.mesh.generation.inserter import BY_SHAPE, Inserter
 from rigidfluid.core.mesh.generation.meshing import generate_mesh, put_back
 from rigidfluid.core.mesh.generation.refine_films import refine_films
-from rigidfluid.core.mesh.generation.refine_surface import LONGEST, long_edges, on_kept_surfaces, refine_surface
+from rigidfluid.core.mesh.generation.refine_surface import long_edges, on_kept_surfaces, refine_surface
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes, edge_lengths
-from rigidfluid.core.mesh.size.size_field import Sizes, wanted_size
+from rigidfluid.core.mesh.size.size_field import LONGEST, Sizes, wanted_size
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, check_volume, distinct_edges, orient
 from rigidfluid.core.model.types import Mesh, Periods
 from rigidfluid.errors import MeshError

@@ -11,9 +11,9 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.geometry.mesher_unit import significant
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.generation.refine_surface import LONGEST, edges_of_facets
+from rigidfluid.core.mesh.generation.refine_surface import edges_of_facets
 from rigidfluid.core.mesh.mesh_quality import cell_quality
-from rigidfluid.core.mesh.size.size_field import Sizes, wanted_size
+from rigidfluid.core.mesh.size.size_field import LONGEST, Sizes, wanted_size
 from rigidfluid.core.mesh.topology import check_mesh, share_no_cell
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.errors import MeshError

@@ -12,9 +12,8 @@ from rigidfluid.core.geometry.facets import area_vectors
 from rigidfluid.core.mechanics.frames import distance_to_body
 from rigidfluid.core.mechanics.shapes import equal_volume_radius, shape_key
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.generation.refine_surface import LONGEST
 from rigidfluid.core.mesh.size.regions import CurvedWall
-from rigidfluid.core.mesh.size.size_field import Sizes, reach_of_bodies, size_between
+from rigidfluid.core.mesh.size.size_field import LONGEST, Sizes, reach_of_bodies, size_between
 from rigidfluid.core.model.body import Body
 
 _MOST_GROWTH = 0.4

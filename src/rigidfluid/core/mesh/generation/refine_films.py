@@ -6,8 +6,8 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.generation.refine_surface import LONGEST, bisect_all, edge_numbers, edges_of_facets
-from rigidfluid.core.mesh.size.size_field import Sizes, wanted_size
+from rigidfluid.core.mesh.generation.refine_surface import bisect_all, edge_numbers, edges_of_facets
+from rigidfluid.core.mesh.size.size_field import LONGEST, Sizes, wanted_size
 from rigidfluid.core.mesh.topology import distinct_edges
 from rigidfluid.core.model.types import Mesh
 

@@ -14,11 +14,8 @@ from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation.on_surfaces import put_on_surfaces
 from rigidfluid.core.mesh.generation.periodic import on_periodic_surfaces
 from rigidfluid.core.mesh.mesh_quality import cell_quality
-from rigidfluid.core.mesh.size.size_field import Sizes, wanted_size
+from rigidfluid.core.mesh.size.size_field import LONGEST, Sizes, wanted_size
 from rigidfluid.core.model.types import Mesh
-
-LONGEST = 1.5
-"""An edge on a body or a curved wall is bisected when it is longer than this many times the wanted size."""
 
 FLAT = 1e-3
 """Quality that a bisected cell must exceed."""

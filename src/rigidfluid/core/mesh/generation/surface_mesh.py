@@ -25,13 +25,12 @@ from rigidfluid.core.mesh.generation.meshing import (
     surfaces_of,
 )
 from rigidfluid.core.mesh.generation.refine_surface import (
-    LONGEST,
     bisect,
     edges_of_facets,
     middles_on_surfaces,
     one_per_cell,
 )
-from rigidfluid.core.mesh.size.size_field import Sizes, wanted_size
+from rigidfluid.core.mesh.size.size_field import LONGEST, Sizes, wanted_size
 from rigidfluid.core.mesh.topology import REMEDY
 from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.domain import Domain

@@ -21,6 +21,9 @@ FINER_IN_FILMS = 0.125
 RESOLVED = 5
 """Fewest refinements with which films have finer cells; with fewer, gaps are kept coarse on purpose."""
 
+LONGEST = 1.5
+"""An edge on a body or a curved wall is bisected when it is longer than this many times the wanted size."""
+
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
