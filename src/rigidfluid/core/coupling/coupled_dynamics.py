@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from copy import copy
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 from scipy import sparse
@@ -55,6 +55,7 @@ class CoupledDynamics(OwnMotions):
         self._weight = None if weight is None else model.modes.T @ weight
         self.inverse_mass, self.inverse_inertia = self._blocks()
         self._friction = _Friction(len(load))
+        self._decayed = _Decayed.after(0.0, model.decay)
 
     def vary_load(self, time: float, varying: BoolArray) -> None:
         """Let the components of Φ that are ``varying`` (N, d+k) grow linearly from now on, from their values before to
@@ -117,9 +118,10 @@ class CoupledDynamics(OwnMotions):
         velocity[:, :d] += time * np.einsum("nij,nj->ni", self._own[0], wrench.force)
         velocity[:, d:] += time * np.einsum("nij,nj->ni", self._own[1], wrench.torque)
         force = load + model.modes.T @ flat(wrench).flat[model.velocities]
-        decay = model.decay * time
-        growing = time**2 * _growing_phi(decay) * self._growth
-        self._modal = np.exp(-decay) * self._modal + time * _phi(decay) * force + growing
+        if self._decayed.time != time:
+            self._decayed = _Decayed.after(time, model.decay)
+        share, gained, growing = self._decayed.share, self._decayed.gained, self._decayed.growing
+        self._modal = share * self._modal + gained * force + growing * self._growth
         velocity.flat[model.velocities] = self._start.flat[model.velocities] + model.modes @ self._modal
         self._velocity = velocity
 
@@ -171,6 +173,22 @@ class CoupledDynamics(OwnMotions):
         i, j = first[turning], second[turning]
         angular[body[i], component[i] - d, component[j] - d] = inverse_mass[i, j]
         return linear, angular
+
+
+class _Decayed(NamedTuple):
+    """Factors of a kick for a ``time``, kept for the next one, which is mostly as long: the ``share`` e⁻ᶻ that is left
+    of modes, z = λt, and what they have ``gained`` by a constant force, t φ₁, and by a ``growing`` one, t² φ₂."""
+
+    time: float
+    share: FloatArray
+    gained: FloatArray
+    growing: FloatArray
+
+    @classmethod
+    def after(cls, time: float, rate: FloatArray) -> Self:
+        """Factors for decay rates λ (c,) [1/time]."""
+        decay = rate * time
+        return cls(time, np.exp(-decay), time * _phi(decay), time**2 * _growing_phi(decay))
 
 
 class _Friction:

@@ -199,16 +199,21 @@ def _velocities(system: System, near: Contacts) -> IntArray:
 
     Motions with joints are always among them, as joint forces are found from the responses of all.
     """
-    count, d, carrier = len(system.bodies), system.dimension, system.motions.carrier
+    d = system.dimension
     width = d + (1 if d == 2 else 3)
-    touching = np.zeros(len(system.motions.prescribed), dtype=bool)
-    touching[carrier[near.body_a]] = True
-    touching[carrier[near.body_b[near.body_b < count]]] = True
-    moves = np.repeat((touching & ~system.motions.prescribed)[:, None], width, axis=1)
+    moves = np.repeat((near_motions(system, near) & ~system.motions.prescribed)[:, None], width, axis=1)
     if system.law is not None and not system.law.dissipative:
         moves[round_motions(system), d:] = False
     moves[system.joints.linked & ~system.motions.prescribed] = True
     return np.flatnonzero(moves)
+
+
+def near_motions(system: System, near: Contacts) -> BoolArray:
+    """Tell which motions (N,) have bodies in the contacts ``near``."""
+    carrier, found = system.motions.carrier, np.zeros(len(system.motions.prescribed), dtype=bool)
+    found[carrier[near.body_a]] = True
+    found[carrier[near.body_b[near.body_b < len(carrier)]]] = True
+    return found
 
 
 def _applied(state: State) -> FloatArray:
