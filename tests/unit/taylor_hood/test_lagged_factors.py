@@ -63,6 +63,18 @@ def test_factors_that_columns_have_made_are_stale_for_another_matrix(made):
     assert len(made) == 2
 
 
+def test_columns_take_no_more_sweeps_of_stale_factors_than_there_are_eigenvalues(made):
+    """Of 1 and 2, where sweeps that take the factors for the inverse do not converge; each column by itself."""
+    matrix, sides = sparse.csr_array(sparse.diags_array(1.0 + np.arange(N) % 2)), np.zeros((N, 3), order="F")
+    sides[:, 0], sides[:2, 2] = np.cos(np.arange(N)), 1.0
+    solver, applied = LaggedFactors(2), []
+    solver.solve(system(IDENTITY), RIGHT, 1e-9)
+    found = solver.solve_columns(Operator(lambda x: applied.append(1) or matrix @ x, lambda: of(matrix)), sides, 1e-6)
+    np.testing.assert_allclose(matrix @ found, sides, atol=1e-6)
+    assert len(applied) == 2
+    assert len(made) == 1
+
+
 def test_what_does_not_converge_with_fresh_factors_is_refused():
     with pytest.raises(StepRejected, match="does not converge"):
         LaggedFactors(2).solve(system(SHIFT, IDENTITY), RIGHT, 1e-9)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from copy import copy
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 from scipy import sparse
 
+from rigidfluid.core.contact.path.modal_substeps import ModalBalls, Modes
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.dynamics import block_diagonal
 from rigidfluid.core.mechanics.own_motions import OwnMotions
@@ -54,7 +55,8 @@ class CoupledDynamics(OwnMotions):
         self._modal = np.zeros(len(load))
         self._weight = None if weight is None else model.modes.T @ weight
         self.inverse_mass, self.inverse_inertia = self._blocks()
-        self._friction = _Friction(len(load))
+        self._friction = _Friction(np.zeros((3, len(load))))
+        self._decayed = _Decayed.after(0.0, model.decay)
 
     def vary_load(self, time: float, varying: BoolArray) -> None:
         """Let the components of Φ that are ``varying`` (N, d+k) grow linearly from now on, from their values before to
@@ -117,11 +119,43 @@ class CoupledDynamics(OwnMotions):
         velocity[:, :d] += time * np.einsum("nij,nj->ni", self._own[0], wrench.force)
         velocity[:, d:] += time * np.einsum("nij,nj->ni", self._own[1], wrench.torque)
         force = load + model.modes.T @ flat(wrench).flat[model.velocities]
-        decay = model.decay * time
-        growing = time**2 * _growing_phi(decay) * self._growth
-        self._modal = np.exp(-decay) * self._modal + time * _phi(decay) * force + growing
+        self._decay_for(time)
+        share, gained, growing = self._decayed.share, self._decayed.gained, self._decayed.growing
+        self._modal = share * self._modal + gained * force + growing * self._growth
         velocity.flat[model.velocities] = self._start.flat[model.velocities] + model.modes @ self._modal
         self._velocity = velocity
+
+    def _decay_for(self, time: float) -> None:
+        """Evaluate the factors of kicks as long as ``time``, unless the latest were as long."""
+        if self._decayed.time != time:
+            self._decayed = _Decayed.after(time, self._model.decay)
+
+    @property
+    def turns(self) -> bool:
+        """Tell whether the model has angular velocities."""
+        axis = self._model.velocities % self._velocity.shape[1]
+        return bool(np.any(axis >= self.pose.position.shape[1]))
+
+    def modal_balls(self, kick: float) -> tuple[ModalBalls, Modes]:
+        """Copies of the present state of all bodies, as balls, and of the modes, with the factors of a ``kick``
+        [time]."""
+        d, model = self.pose.position.shape[1], self._model
+        place = np.array(self.pose.position, order="C"), np.array(self.pose.orientation, order="C")
+        twist, rate = ((each[:, :d].copy(), each[:, d:].copy()) for each in (self._velocity, self._rate))
+        balls = ModalBalls(*place, *twist, *rate, np.ascontiguousarray(self._own[0]))
+        body, axis = np.divmod(model.velocities, self._velocity.shape[1])
+        start, shape = self._start.flat[model.velocities], np.ascontiguousarray(model.modes)
+        own = self._modal.copy(), self._load, self._growth
+        self._decay_for(kick)
+        factors = self._decayed.share, self._decayed.gained, self._decayed.growing
+        return balls, Modes(body, axis, shape, start, *own, *factors, *self._friction.with_time(self._time))
+
+    def place_balls(self, balls: ModalBalls, modes: Modes) -> None:
+        """Take over ``balls`` and ``modes`` that have moved."""
+        self.pose = Pose(balls.position, balls.orientation)
+        self._velocity = np.concatenate([balls.velocity, balls.spin], axis=1)
+        self._modal, self._time = modes.modal, float(modes.times[0])
+        self._friction = _Friction(modes.integrals, float(modes.times[1]))
 
     def begin(self, ahead: float) -> None:
         """No-op: these motions have no prescribed velocity jump."""
@@ -173,14 +207,32 @@ class CoupledDynamics(OwnMotions):
         return linear, angular
 
 
+class _Decayed(NamedTuple):
+    """Factors of a kick for a ``time``, kept for the next one, which is mostly as long: the ``share`` e⁻ᶻ that is left
+    of modes, z = λt, and what they have ``gained`` by a constant force, t φ₁, and by a ``growing`` one, t² φ₂."""
+
+    time: float
+    share: FloatArray
+    gained: FloatArray
+    growing: FloatArray
+
+    @classmethod
+    def after(cls, time: float, rate: FloatArray) -> Self:
+        """Factors for decay rates λ (c,) [1/time]."""
+        decay = rate * time
+        return cls(time, np.exp(-decay), time * _phi(decay), time**2 * _growing_phi(decay))
+
+
 class _Friction:
     """Integrals over time t of modes y that start at zero: ∫ dt, ∫ y dt, ∫ t y dt and ∫ y² dt."""
 
-    def __init__(self, count: int) -> None:
-        self._time = 0.0
-        self._way = np.zeros(count)
-        self._moment = np.zeros(count)
-        self._square = np.zeros(count)
+    def __init__(self, integrals: FloatArray, time: float = 0.0) -> None:
+        self._time = time
+        self._way, self._moment, self._square = integrals
+
+    def with_time(self, kicked: float) -> tuple[FloatArray, FloatArray]:
+        """The times ``kicked`` and drifted (2,), and copies of the last three integrals (3, c)."""
+        return np.array([kicked, self._time]), np.stack([self._way, self._moment, self._square])
 
     def add(self, modal: FloatArray, time: float) -> None:
         """Add a drift with velocities ``modal`` (c,) for ``time``."""

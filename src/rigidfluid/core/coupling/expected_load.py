@@ -11,9 +11,6 @@ from rigidfluid.core.model.reduced_model import ReducedModel, mean_load
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
 
-SLOW = 0.1
-"""Largest relative growth of a load in a step that is expected to go on: that of contacts that rest or press slowly."""
-
 
 def load_before(system: System, state: State, model: ReducedModel) -> FloatArray:
     """Load Φ (c,) at the start of a step: that at the end of the one before, less R (Uⁿ - Uⁿ⁻¹), since drag counts from
@@ -28,7 +25,8 @@ def load_before(system: System, state: State, model: ReducedModel) -> FloatArray
 
 def expected_load(system: System, state: State, model: ReducedModel, before: FloatArray, size: float) -> FloatArray:
     """Load Φ (c,) expected at the end of a step of this ``size`` [time]: grown from its value ``before`` (c,) as fast
-    as in the latest step where it grew slowly, else the mean of that step; weight and applied wrenches in the first."""
+    as in the latest step, or the mean of that step where its growth is unknown; weight and applied wrenches in the
+    first."""
     if state.past is None:
         return model.components(flat(outer_load(system, state)))
     change = model.components(flat(state.motions.twist) - flat(state.past.twist))
@@ -40,7 +38,7 @@ def expected_load(system: System, state: State, model: ReducedModel, before: Flo
         return mean
     latest = state.coupling.load - state.coupling.load_before
     growth = size / state.past.step * _carried_over(latest, state.coupling.model, model)
-    return np.where(np.abs(growth) < SLOW * np.abs(before), before + growth, mean)
+    return np.where(np.isnan(growth), mean, before + growth)
 
 
 def _carried_over(values: FloatArray, latest: ReducedModel, model: ReducedModel) -> FloatArray:

@@ -38,8 +38,9 @@ CONVERGED = 1e-3
 CONVERGED_SHARED = 1e-2
 """The same where bodies share right sides in the solve for impulse responses, which are no more exact then."""
 
-STEADY = 1e-2
-"""Relative change of the contacts' impulses below which one fluid solve may be enough."""
+STEADY = 0.1
+"""Change of velocities by contacts, relative to the velocities, below which one fluid solve may be enough: the model
+that gives it is known to a hundredth."""
 
 
 class FluidScheme(ABC):
@@ -90,12 +91,15 @@ class FluidScheme(ABC):
         return self._with_turning(step, state, path)
 
     def is_unsteady(self, state: State, path: BodyStep, size: float) -> bool:
-        """Tell whether contact impulses changed by more than STEADY."""
+        """Tell whether contacts change velocities by more than STEADY otherwise than in the step before."""
         if path.coupling is None:
             return False
-        arms = twist_arms(self._system)
-        now, before = flat(path.motions.contact) / arms, size * flat(state.motions.contact) / arms
-        return bool(np.linalg.norm(now - before) > STEADY * np.linalg.norm(now))
+        model, d0 = path.coupling.model, float(derivative_weights(size, state.past_step)[0])
+        now, before = (model.components(flat(each)) for each in (path.motions.contact, state.motions.contact))
+        gained, otherwise = (self._response(model, d0, impulse) for impulse in (now, now - size * before))
+        arm, speed = model.components(twist_arms(self._system)), model.components(flat(state.motions.twist))
+        scale = max(float(np.linalg.norm(arm * each)) for each in (speed, gained))
+        return bool(np.linalg.norm(arm * otherwise) > STEADY * scale)
 
     def changes_gaps_too_fast(self, state: State, pose: Pose, mesh_at: Callable[[Pose], Mesh]) -> bool:
         return change_too_fast(self._system, state, pose, mesh_at)
@@ -170,11 +174,13 @@ class FluidScheme(ABC):
         before = (flat(state.motions.contact) + _applied(state)) * (state.past_step or 0.0)
         applied = _applied(candidate)
         impulses = model.components(step.impulse + (candidate.past_step or 0.0) * applied), model.components(before)
-        load = load_within(model, step.derivative, (twists[0], twists[1], twists[2]), impulses) - used.correction
-        load = load + model.components(applied)
-        load = load - model.components(candidate.link.wrench)
+        given = step.derivative, (twists[0], twists[1], twists[2]), impulses
+        load = load_within(model, *given)
+        # as the new model reads it too: what the change of models adds is no growth
+        before = used.load_before + (load - load_within(used.model, *given))
+        load = load - used.correction + model.components(applied) - model.components(candidate.link.wrench)
         missed = model.components(flat(path.motions.twist)) - twists[0]
-        return Coupling(model, load, used.load_before, used.correction + self._correction(model, step, missed))
+        return Coupling(model, load, before, used.correction + self._correction(model, step, missed))
 
     def _agree(self, used: Coupling, found: Coupling, path: BodyStep, state: State, candidate: State) -> bool:
         """Compare path and solution: changes of load and responses count by those of velocities at the end."""
@@ -199,16 +205,21 @@ def _velocities(system: System, near: Contacts) -> IntArray:
 
     Motions with joints are always among them, as joint forces are found from the responses of all.
     """
-    count, d, carrier = len(system.bodies), system.dimension, system.motions.carrier
+    d = system.dimension
     width = d + (1 if d == 2 else 3)
-    touching = np.zeros(len(system.motions.prescribed), dtype=bool)
-    touching[carrier[near.body_a]] = True
-    touching[carrier[near.body_b[near.body_b < count]]] = True
-    moves = np.repeat((touching & ~system.motions.prescribed)[:, None], width, axis=1)
+    moves = np.repeat((near_motions(system, near) & ~system.motions.prescribed)[:, None], width, axis=1)
     if system.law is not None and not system.law.dissipative:
         moves[round_motions(system), d:] = False
     moves[system.joints.linked & ~system.motions.prescribed] = True
     return np.flatnonzero(moves)
+
+
+def near_motions(system: System, near: Contacts) -> BoolArray:
+    """Tell which motions (N,) have bodies in the contacts ``near``."""
+    carrier, found = system.motions.carrier, np.zeros(len(system.motions.prescribed), dtype=bool)
+    found[carrier[near.body_a]] = True
+    found[carrier[near.body_b[near.body_b < len(carrier)]]] = True
+    return found
 
 
 def _applied(state: State) -> FloatArray:

@@ -11,7 +11,7 @@ from rigidfluid.core.contact.path.contact_load import contact_load
 from rigidfluid.core.contact.path.substep_path import SubstepPath
 from rigidfluid.core.coupling.convection import turning
 from rigidfluid.core.coupling.expected_load import expected_load, load_before
-from rigidfluid.core.coupling.fluid_scheme import FluidScheme
+from rigidfluid.core.coupling.fluid_scheme import FluidScheme, near_motions
 from rigidfluid.core.coupling.stirring import impact_tick
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.mechanics.wrenches import flat
@@ -45,15 +45,18 @@ class NavierStokesScheme(FluidScheme):
 
     def _varying(self, state: State, bodies: BodyDynamics, near: Contacts, size: float) -> BoolArray:
         """All where the step resolves its contacts, and those of motions whose contacts press slowly."""
-        system, law = self._system, self._system.law
-        if law is None or size <= RESOLVED * SubstepPath(system, law, bodies, size).planned(near, size).substep:
-            return np.ones_like(flat(state.motions.contact), dtype=bool)
+        system, law, shape = self._system, self._system.law, flat(state.motions.contact).shape
+        if law is None:
+            return np.ones(shape, dtype=bool)
         force = np.zeros_like(state.motions.contact.force)
         load = contact_load(system, law, state.contacts, bodies, state.springs)
         np.add.at(force, system.motions.carrier, load.wrench.force)
         change = np.linalg.norm(force - state.motions.contact.force, axis=1)
         slow = change < SLOW * np.linalg.norm(force, axis=1)
-        return np.broadcast_to(slow[:, None], flat(state.motions.contact).shape)
+        read = near_motions(system, near) | system.joints.linked
+        if slow[read].all() or size > RESOLVED * SubstepPath(system, law, bodies, size).planned(near, size).substep:
+            return np.broadcast_to(slow[:, None], shape)
+        return np.ones(shape, dtype=bool)
 
     def _with_friction(self, path: BodyStep) -> BodyStep:
         return path

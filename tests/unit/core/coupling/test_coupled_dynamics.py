@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
+from rigidfluid.core.coupling import coupled_dynamics
 from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.model.reduced_model import Coupling, Evaluation, ReducedModel, reduced_model
@@ -261,6 +262,24 @@ def test_a_growing_load_is_followed_exactly_in_any_number_of_kicks(time):
         bodies.vary_load(time, ALL)
         moved(bodies, time, parts)
     np.testing.assert_allclose(joined(once.twist), joined(often.twist), rtol=1e-9)
+
+
+def test_kicks_of_other_lengths_have_other_factors():
+    bodies, once = resisted(-0.5 * LOAD), resisted(-0.5 * LOAD)
+    once.vary_load(0.3, ALL)
+    bodies.vary_load(0.3, ALL)
+    once.kick(WRENCH, 0.3)
+    for time in (0.05, 0.05, 0.15, 0.05):
+        bodies.kick(WRENCH, time)
+    np.testing.assert_allclose(joined(bodies.twist), joined(once.twist), rtol=1e-9)
+
+
+def test_kicks_as_long_as_the_one_before_evaluate_no_exponential(monkeypatch):
+    asked = []
+    growing = coupled_dynamics._growing_phi
+    monkeypatch.setattr(coupled_dynamics, "_growing_phi", lambda decay: asked.append(1) or growing(decay))
+    moved(dynamics(), 0.2, 5)
+    assert len(asked) == 2  # one by the start
 
 
 def test_the_response_to_an_impulse_at_once_is_that_of_the_masses_alone():

@@ -24,8 +24,13 @@ STEP = 0.1
 ANY: Any = SimpleNamespace()
 
 
-def varying(monkeypatch: pytest.MonkeyPatch, now: list[float], before: list[float], substep: float) -> list[bool]:
-    """Whether Φ varies for each of some bodies that are pressed so ``now``, and in the mean of the step ``before``."""
+def varying(
+    monkeypatch: pytest.MonkeyPatch, now: list[float], before: list[float], substep: float | None, far: int = 0
+) -> list[bool]:
+    """Whether Φ varies for each of some bodies that are pressed so ``now``, and in the mean of the step ``before``.
+
+    The last ``far`` of them are near nothing. Without a ``substep`` none may be planned.
+    """
     count = len(now)
 
     def wrench(force: list[float]) -> Wrench:
@@ -34,12 +39,16 @@ def varying(monkeypatch: pytest.MonkeyPatch, now: list[float], before: list[floa
     motions = SingleBodies(
         *masses(count, 2), np.zeros(count, dtype=bool), placed(count, 2), split(np.zeros((count, 3)), 2)
     )
-    system: Any = SimpleNamespace(motions=motions, law=object())
+    joints = SimpleNamespace(linked=np.zeros(count, dtype=bool))
+    system: Any = SimpleNamespace(motions=motions, law=object(), joints=joints)
+    bodies = np.arange(count - far)
+    near: Any = SimpleNamespace(body_a=bodies, body_b=np.full(len(bodies), count))
     state: Any = SimpleNamespace(motions=SimpleNamespace(contact=wrench(before)), contacts=ANY, springs=None)
     load = ContactLoad(wrench(now), None, 0.0, 0.0)
     monkeypatch.setattr(navier_stokes_scheme, "contact_load", lambda *_: load)
-    monkeypatch.setattr(SubstepPath, "planned", lambda *_: SimpleNamespace(substep=substep))
-    found = NavierStokesScheme(system)._varying(state, ANY, ANY, STEP)
+    plan = None if substep is None else SimpleNamespace(substep=substep)
+    monkeypatch.setattr(SubstepPath, "planned", lambda *_: plan)
+    found = NavierStokesScheme(system)._varying(state, ANY, near, STEP)
     assert np.all(found == found[:, :1])
     return [bool(each) for each in found[:, 0]]
 
@@ -51,6 +60,10 @@ def test_the_load_varies_for_bodies_that_are_pressed_slowly(monkeypatch):
 
 def test_the_load_varies_for_all_where_the_step_resolves_its_contacts(monkeypatch):
     assert varying(monkeypatch, [0.0, 1.0], [0.0, 0.0], STEP / RESOLVED) == [True, True]
+
+
+def test_nothing_is_planned_where_all_bodies_near_others_are_pressed_slowly(monkeypatch):
+    assert varying(monkeypatch, [1.0, 1.0, 0.0], [0.92, 1.08, 0.0], None, far=1)[:2] == [True, True]
 
 
 @pytest.mark.long

@@ -37,17 +37,17 @@ def advance_balls(formula, law, balls, radius, around, load, impulse, span):
         half = 0.5 * part
         _kick(velocity, mass, force, weight, pushed, half)
         _twist(orientation, momentum, inertia, torque, turned, half, elapsed, since)
-        square = _drift(position, velocity, part, before)
+        square = drift_balls(position, velocity, part, before)
         elapsed += part
         if not square < (0.5 * max(list_reach - law_range, 0.0)) ** 2:
             start, second = near_each_ball(position, radius, planes, wide)
             before, list_reach, anew = position.copy(), wide, True
-        _clear(force, torque, body, touching if steps else -1)
+        clear_touched(force, torque, body, touching if steps else -1)
         if len(second) > len(body):
             body, gap = np.empty((len(second), 2), np.int64), np.empty(len(second))
             normal, damped = np.empty((len(second), position.shape[1])), np.empty((len(second), position.shape[1]))
-        touching, least, nearest = _touching(position, radius, start, second, planes, law_range, body, gap)
-        _normals(position, planes, body[:touching], normal)
+        touching, least, nearest = find_touching(position, radius, start, second, planes, law_range, body, gap)
+        write_normals(position, planes, body[:touching], normal)
         loss_before, loss = loss, 0.0
         pairs = body[:touching], gap, normal
         dampers = _push(formula, parameters, balls, radius, *pairs, damped, force, torque)
@@ -92,7 +92,7 @@ def _twist(orientation, momentum, inertia, torque, turned, time, elapsed, since)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _drift(position, velocity, time, before):
+def drift_balls(position, velocity, time, before):
     """Move all for a time; return the square of the longest way of any since it was at ``before``."""
     farthest = 0.0
     for i in range(len(position)):
@@ -105,7 +105,7 @@ def _drift(position, velocity, time, before):
 
 
 @njit(cache=True, nogil=True)
-def _clear(force, torque, body, touching):
+def clear_touched(force, torque, body, touching):
     """Set to zero the rows of balls that touch, or all if it is not known which do."""
     if touching < 0:
         force[:] = 0.0
@@ -118,7 +118,7 @@ def _clear(force, torque, body, touching):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _touching(position, radius, start, second, planes, reach, body, gap):
+def find_touching(position, radius, start, second, planes, reach, body, gap):
     """Write the pairs in reach and their gaps; return their number, the least gap, and the ball that has it."""
     # Distances are written out: functions shared with `detectors.sphere_contacts` made a substep 3 times slower.
     count, dimension = position.shape
@@ -148,7 +148,7 @@ def _touching(position, radius, start, second, planes, reach, body, gap):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _normals(position, planes, body, normal):
+def write_normals(position, planes, body, normal):
     """Write the normal of each pair of different centres, from b to a."""
     for i in range(len(body)):
         a, b = body[i]

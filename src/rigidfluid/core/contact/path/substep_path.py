@@ -11,6 +11,7 @@ from rigidfluid.core.contact.path.ball_substeps import ball_substeps
 from rigidfluid.core.contact.path.body_step import BodyStep, arrived
 from rigidfluid.core.contact.path.contact_load import contact_load
 from rigidfluid.core.contact.path.look_ahead import fastest_speeds
+from rigidfluid.core.contact.path.modal_substeps import modal_substeps
 from rigidfluid.core.contact.path.substep import Plan, Reach, plan
 from rigidfluid.core.contact.path.substeps import SingleSubsteps, Span, Substeps
 from rigidfluid.core.mechanics.wrenches import nothing
@@ -76,7 +77,8 @@ class SubstepPath:
         impulse, dissipated, actuator_work, count, left = nothing(dynamics.pose), 0.0, 0.0, 0, size
         load = contact_load(system, self.law, contacts, dynamics, self.springs)
         dissipated += load.slipped
-        substeps: Substeps = ball_substeps(system, self.law, dynamics) or SingleSubsteps(system, self.law, dynamics)
+        given = system, self.law, dynamics
+        substeps: Substeps = ball_substeps(*given) or modal_substeps(*given) or SingleSubsteps(*given)
         planned, free_flight, substep, longest = 0.0, 0.0, 0.0, size / spring_parts(system, size)
         while left > 0.0:
             if planned <= 0.0 or contacts.gap.min(initial=np.inf) > self.law.range:
