@@ -76,7 +76,7 @@ def assert_all_as_alone(found, tolerance, **tolerances):
     for shared, _ in found["shared"]:
         assert shared == found["shared"][0][0]
         for name, expected in found["alone"].items():
-            allowed = tolerances.get(name, tolerance) * np.abs(expected).max()
+            allowed = tolerances.get(name, tolerance) * np.nanmax(np.abs(expected))  # probes without a scalar have NaN
             np.testing.assert_allclose(shared[name], expected, rtol=0, atol=allowed, err_msg=name)
 
 
@@ -87,9 +87,7 @@ def assert_keeps_no_memory(found, times):
         assert np.diff(held).min() < times * 30_000
 
 
-@pytest.mark.parametrize(
-    "scene", [CHANNEL, ENCLOSED, ROOM, THINNING], ids=["channel", "enclosed", "room", "thinning"]
-)
+@pytest.mark.parametrize("scene", [CHANNEL, ENCLOSED, ROOM, THINNING], ids=["channel", "enclosed", "room", "thinning"])
 def test_three_processes_step_as_one_does(printed, scene):
     found = printed(3, STEPS, scene, [])
     assert found["alone"]["remeshes"] == 1

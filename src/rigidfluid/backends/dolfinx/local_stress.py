@@ -41,8 +41,8 @@ class _Points:
 
     @property
     def weight(self) -> FloatArray:
-        """What each point weighs in an integral (N,)."""
-        jacobian = self._evaluated(self._jacobian).reshape(len(self.cells), -1)
+        """Weights of the points in an integral (N,)."""
+        jacobian = self._evaluated(self._jacobian).reshape(len(self.cells), self.per_cell)
         return np.asarray(np.abs(jacobian) * self._weight).ravel()
 
     @property
@@ -61,8 +61,9 @@ class _Points:
 
     def take(self, function: fem.Function, values: FloatArray) -> None:
         """Give a function its ``values`` (N, …)."""
-        dofs = function.function_space.dofmap.list[self.cells].ravel()
-        function.x.array.reshape(-1, values[0].size)[dofs] = values.reshape(len(values), -1)
+        dofmap = function.function_space.dofmap
+        dofs = dofmap.list[self.cells].ravel()
+        function.x.array.reshape(-1, dofmap.bs)[dofs] = values.reshape(len(dofs), dofmap.bs)
 
     def _evaluated(self, expression: Any) -> FloatArray:
         return np.asarray(expression.eval(self._mesh, self.cells.astype(np.int32)))
