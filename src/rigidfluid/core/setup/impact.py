@@ -15,6 +15,7 @@ from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.generalised_newtonian import GeneralisedNewtonian
 from rigidfluid.core.setup.boundary_samples import points_of, sample_times, sampled_inflows
 from rigidfluid.core.setup.fluid import Fluid
+from rigidfluid.errors import RigidfluidError
 
 if TYPE_CHECKING:
     from rigidfluid.core.setup.model import Model
@@ -22,8 +23,8 @@ if TYPE_CHECKING:
 
 _HALVINGS = 60
 _REYNOLDS = 1e-12, 1e12
-_FACTORS = 1e-6, 1e6
-"""Bounds of a speed with the viscosity at its own shear rate, over that with `dynamic_viscosity`."""
+_DOUBLINGS = 20
+"""Most by which a viscosity that varies changes a speed, as often doubled or halved."""
 
 _NEWTON_REYNOLDS, _NEWTON_DRAG = 1000.0, 0.44
 
@@ -97,24 +98,30 @@ def terminal_speeds(model: Model, weight: FloatArray) -> FloatArray:
     assert isinstance(model.fluid, Fluid)
     material = model.fluid.material
     speeds = _terminal_speeds(model, weight, np.full(len(weight), material.dynamic_viscosity))
-    if isinstance(material, GeneralisedNewtonian):
+    if not isinstance(material, GeneralisedNewtonian):
+        return speeds
+    try:
         return _self_consistent_speeds(model, weight, material, speeds)
-    return speeds
+    except RigidfluidError:  # it has none at such a rate, which a run tells when it gets there
+        return speeds
 
 
 def _self_consistent_speeds(
     model: Model, weight: FloatArray, material: GeneralisedNewtonian, speeds: FloatArray
 ) -> FloatArray:
-    """Terminal speeds v (n,) with the viscosity at the shear rate v/2r, by halving around the ``speeds`` with one
-    viscosity; unique where the stress grows with the shear rate."""
+    """Terminal speeds v (n,) with the viscosity at the shear rate v/2r, by doubling or halving the ``speeds`` with one
+    viscosity until they are passed, and bisection from there; unique where the stress grows with the shear rate."""
     rate = speeds / (2.0 * _measure_bodies(equal_volume_radius, model.shapes))
-    low, high = (np.full(len(rate), np.log(bound)) for bound in _FACTORS)
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        factor = np.exp(middle)
-        faster = _terminal_speeds(model, weight, material.viscosity(factor * rate)) > factor * speeds
-        low, high = np.where(faster, middle, low), np.where(faster, high, middle)
-    return _terminal_speeds(model, weight, material.viscosity(np.exp(high) * rate))
+    factor, step = np.zeros(len(rate)), np.full(len(rate), np.log(2.0))
+    passed, first = np.zeros(len(rate), dtype=bool), None
+    for _ in range(_DOUBLINGS + _HALVINGS):
+        times = np.exp(factor)
+        faster = _terminal_speeds(model, weight, material.viscosity(times * rate)) > times * speeds
+        first = faster if first is None else first
+        passed |= faster != first
+        step = np.where(passed, 0.5 * step, step)
+        factor += np.where(faster, step, -step)
+    return _terminal_speeds(model, weight, material.viscosity(np.exp(factor) * rate))
 
 
 def _terminal_speeds(model: Model, weight: FloatArray, viscosity: FloatArray) -> FloatArray:
