@@ -1,11 +1,13 @@
-"""Fluids whose viscosity varies: orders of convergence, and the plastic limit of a cylinder's drag."""
+"""Fluids whose viscosity varies: orders of convergence, bounds of drags, and the plastic limit of a cylinder's."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from crossing_disk import bounds_of_drag, drag_in_power_law, newtonian_drag, slope_of_drag
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from matplotlib.tri import Triangulation
@@ -18,8 +20,10 @@ from rigidfluid.core.output.cell_gradients import velocity_gradients
 
 DIVISIONS, LAYERS, BINGHAM = (8, 16, 32), (4, 8, 16), (3, 10, 30, 100)
 GROWTH, LIMIT = 100.0, 4.0 * np.sqrt(2.0) + 2.0 * np.pi
-FINE = {"size": 0.25, "size_body": 0.03, "growth": 0.05}
-COARSE = {"size": 0.25, "size_body": 0.06, "growth": 0.1}
+EXPONENTS, THINNING = (0.3, 0.5, 0.7, 0.9, 1.0, 1.2, 1.4), (0.4, 0.2, 0.1, 0.05)
+STEP, SIDE, WIDE = 0.01, 5.0, 10.0
+MESHES = [{"size": 0.25, "size_body": edge, "growth": edge / 0.6} for edge in (0.12, 0.06, 0.03)]
+COARSE, FINE = MESHES[1:]
 
 
 @dataclass(frozen=True)
@@ -37,16 +41,14 @@ def page(work: Work) -> Page:
     names = list(materials(2))
     channels = {name: [channel_error(name, divisions) for divisions in DIVISIONS] for name in names}
     torques = {name: [torque_error(name, layers) for layers in LAYERS] for name in names}
-    cylinders = {number: cylinder(number, FINE) for number in BINGHAM}
-    drags = [cylinders[number].drag for number in BINGHAM]
-    coarse = cylinder(10, COARSE).drag
-    power, factor = np.polyfit(np.log(BINGHAM[1:]), np.log(np.subtract(drags[1:], LIMIT)), 1)
-    rows = [
-        (f"{number}", f"{drag:.2f}", f"{drag / LIMIT - 1.0:.1%}") for number, drag in zip(BINGHAM, drags, strict=True)
-    ]
+    cylinders = {number: cylinder(bingham(number), FINE) for number in BINGHAM}
+    thin = {exponent: cylinder(power_law(exponent), FINE).drag for exponent in THINNING}
     text = ABOUT + _orders("divisions", DIVISIONS, channels) + TORQUES + _orders("layers", LAYERS, torques)
-    text += DRAG.format(limit=LIMIT, fine=drags[1], coarse=coarse, power=power, factor=np.exp(factor))
-    text += table(("Bingham number", "drag / τ_y d", "above the limit"), rows)
+    text += CROSSING.format(slope=_slope(), exact=slope_of_drag(), drag=newtonian_drag()) + _crossings()
+    text += DRAG.format(limit=LIMIT, wide=cylinder(bingham(10), COARSE, WIDE).drag)
+    text += _above("Bingham number", {number: cylinders[number].drag for number in BINGHAM}, BINGHAM[1:])
+    text += POWER_LAW + _above("n", thin, THINNING) + HALVED
+    text += _halvings({"Bingham number 10": bingham(10), "n = 0.1": power_law(0.1)})
     return Page("Fluids whose viscosity varies", text, {"": plot(cylinders)})
 
 
@@ -65,14 +67,23 @@ def torque_error(name: str, layers: int) -> float:
     return float(abs(torque / -turning_torque(material) - 1.0))
 
 
-def cylinder(number: int, mesh: dict[str, float]) -> Cylinder:
-    """One step of Stokes flow from rest, which is steady, at a Bingham ``number`` in a box of side 5."""
-    material = {"type": "bingham", "viscosity": 1.0 / number, "yield_stress": 1.0, "stress_growth": GROWTH}
+def bingham(number: float) -> dict[str, Any]:
+    """A Bingham fluid with the yield stress 1, of that Bingham ``number`` at a diameter and a velocity of 1."""
+    return {"type": "bingham", "viscosity": 1.0 / number, "yield_stress": 1.0, "stress_growth": GROWTH}
+
+
+def power_law(exponent: float) -> dict[str, Any]:
+    """τ = γ̇ⁿ of that ``exponent`` n."""
+    return {"type": "power_law", "viscosity": 1.0, "shear_rate": 1.0, "exponent": exponent, "least_shear_rate": 1e-2}
+
+
+def cylinder(material: dict[str, Any], mesh: dict[str, float], side: float = SIDE) -> Cylinder:
+    """One step of Stokes flow from rest, which is steady, in a square box of that ``side``."""
     moving = {"position": [0.0, 0.0], "prescribed": {"velocity": [1.0, 0.0]}}
     scene = {
         "scene": {"name": "cylinder", "dimension": 2},
         "fluid": {"model": "stokes", "density": 1.0, "material": material},
-        "domain": {"lower": [-2.5, -2.5], "upper": [2.5, 2.5]},
+        "domain": {"lower": [-0.5 * side] * 2, "upper": [0.5 * side] * 2},
         "body": [{"type": "sphere", "radius": 0.5, "density": 1.0} | moving],
         "mesh": mesh,
         "time": {"end": 1e-6, "step": 1e-6},
@@ -99,6 +110,42 @@ def plot(cylinders: Mapping[int, Cylinder]) -> Figure:
         axes.set(aspect="equal", title=f"Bingham number {number}", xlim=(-2.5, 2.5), ylim=(-2.5, 2.5))
     figure.colorbar(image, ax=every, label="stress / yield stress", extend="max")
     return figure
+
+
+def _slope() -> float:
+    """d drag/dn at n = 1 by a central difference, on the finest layers."""
+    ahead, behind = (drag_in_power_law(1.0 + step, LAYERS[-1]) for step in (STEP, -STEP))
+    return (ahead - behind) / (2.0 * STEP)
+
+
+def _crossings() -> str:
+    """Table of drags on a disk in a round wall, between their bounds."""
+    rows = []
+    for exponent in EXPONENTS:
+        below, above = bounds_of_drag(exponent)
+        drags = [drag_in_power_law(exponent, layers) for layers in LAYERS]
+        rows.append((f"{exponent}", *(f"{each:.2f}" for each in (below, *drags, above)), _order(drags)))
+    return table(("n", "bound below", *(f"{layers} layers" for layers in LAYERS), "bound above", "order"), rows)
+
+
+def _above(first: str, drags: Mapping[float, float], fitted: Sequence[float]) -> str:
+    """Table of drags above the plastic limit, and the power by which those that are ``fitted`` go to it."""
+    rows = [(f"{value}", f"{drag:.2f}", f"{drag / LIMIT - 1.0:.1%}") for value, drag in drags.items()]
+    power, factor = np.polyfit(np.log(fitted), np.log([drags[value] - LIMIT for value in fitted]), 1)
+    goes = f"It goes to the limit as {np.exp(factor):.1f} times the {power:.2f}th power of the {first}"
+    return table((first, "drag / τ d", "above the limit"), rows) + f"\n\n{goes}, a fit to the last {len(fitted)}.\n"
+
+
+def _halvings(fluids: Mapping[str, dict[str, Any]]) -> str:
+    """Table of drags with halved edges."""
+    drags = {name: [cylinder(material, mesh).drag for mesh in MESHES] for name, material in fluids.items()}
+    rows = [(name, *(f"{drag:.4f}" for drag in found), _order(found)) for name, found in drags.items()]
+    return table(("fluid", *(f"edges of {mesh['size_body']} d" for mesh in MESHES), "order"), rows)
+
+
+def _order(found: Sequence[float]) -> str:
+    """Order of convergence of three values, each with half the edges of the one before."""
+    return f"{np.log2(abs((found[1] - found[0]) / (found[2] - found[1]))):.1f}"
 
 
 def _orders(first: str, counts: Sequence[int], columns: Mapping[str, Sequence[float]]) -> str:
@@ -132,6 +179,18 @@ of the torque on the disk.
 
 """
 
+CROSSING = """
+
+## A disk across a round wall
+
+The same disk moves across the middle of the wall with the velocity 1 in a power-law fluid, τ = γ̇ⁿ. Its drag is between
+two bounds, by the extremum principles of Hill and Power (Q. J. Mech. Appl. Math. 9, 313, 1956,
+doi:10.1093/qjmam/9.3.313) with the velocity and the stress of the Newtonian flow, which has a closed form. At n = 1
+they meet at {drag:.4f}, where the drag's derivative by n is {slope:.3f}, and {exact:.3f} by the reciprocal theorem.
+`order`: of convergence, from the differences of the three.
+
+"""
+
 DRAG = """
 
 ## A cylinder in a Bingham fluid
@@ -139,10 +198,22 @@ DRAG = """
 A cylinder moves slowly through a Bingham fluid in a box of side 5 diameters. At high Bingham numbers τ_y d/(μ v) its
 drag is that in a plastic solid, (4√2 + 2π) τ_y d = {limit:.2f} τ_y d for a surface that the solid sticks to: exact
 (Randolph and Houlsby, The limiting pressure on a circular pile loaded laterally in cohesive soil, Géotechnique 34, 613,
-1984). Here the drag lies above that by {factor:.1f} Bi^{power:.2f} τ_y d, a power fitted from Bingham numbers of 10 on.
-Papanastasiou's m is 100 d/v. Edges on the cylinder are 0.03 d long; with twice that the drag at a Bingham number of 10
-is {coarse:.2f} instead of {fine:.2f}.
+1984, doi:10.1680/geot.1984.34.4.613). Papanastasiou's m is 100 d/v, and edges on the cylinder are 0.03 d long. In a
+box of side 10, with edges of 0.06 d, the drag at a Bingham number of 10 is {wide:.2f}.
 
 The fluid is white in the picture where it does not yield.
+
+"""
+
+POWER_LAW = """
+## A cylinder in a power-law fluid
+
+In the same box. A fluid with the stress τ = K γ̇ⁿ becomes a plastic solid with the yield stress K as n goes to 0, so
+its drag goes to the same limit. It is over K (v/d)ⁿ d here; the fluid is Newtonian below shear rates of 0.01 v/d.
+
+"""
+
+HALVED = """
+Both on meshes of halved edges:
 
 """

@@ -51,6 +51,14 @@ ROOM = CHANNEL | {
 }
 
 
+THINNING = CHANNEL | {
+    "fluid": {"density": 1.0, "gravity": [0.0, -10.0], "tolerance": 1e-13}
+    | {"material": {"type": "carreau", "viscosity": 0.2, "relaxation_time": 1.0, "exponent": 0.5}},
+    "mesh": CHANNEL["mesh"] | {"order": 1},
+}
+"""Straight cells alone: in curved ones a viscosity that varies is integrated by each backend's own rule."""
+
+
 @pytest.fixture
 def printed(mpirun, tmp_path):
     """What a script prints of a scene."""
@@ -68,7 +76,7 @@ def assert_all_as_alone(found, tolerance, **tolerances):
     for shared, _ in found["shared"]:
         assert shared == found["shared"][0][0]
         for name, expected in found["alone"].items():
-            allowed = tolerances.get(name, tolerance) * np.abs(expected).max()
+            allowed = tolerances.get(name, tolerance) * np.nanmax(np.abs(expected))  # probes without a scalar have NaN
             np.testing.assert_allclose(shared[name], expected, rtol=0, atol=allowed, err_msg=name)
 
 
@@ -79,7 +87,7 @@ def assert_keeps_no_memory(found, times):
         assert np.diff(held).min() < times * 30_000
 
 
-@pytest.mark.parametrize("scene", [CHANNEL, ENCLOSED, ROOM], ids=["channel", "enclosed", "room"])
+@pytest.mark.parametrize("scene", [CHANNEL, ENCLOSED, ROOM, THINNING], ids=["channel", "enclosed", "room", "thinning"])
 def test_three_processes_step_as_one_does(printed, scene):
     found = printed(3, STEPS, scene, [])
     assert found["alone"]["remeshes"] == 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any
@@ -94,11 +95,16 @@ def channel_flow(
 
 def turning_flow(material: Any, layers: int) -> Flow:
     """Steady Stokes flow around a disk that turns with `TURN` in a round wall at rest, on curved cells."""
+    return moved_flow(material, layers, [0.0, 0.0, TURN])
+
+
+def moved_flow(material: Any, layers: int, twist: Sequence[float], engine: type[Any] = ScikitFem) -> Flow:
+    """The same around a disk that moves with a ``twist`` (3,) in the middle, by a backend, the ``engine``."""
     posed = FluidProblem(2, 1, 1.0, material, False, (NoSlip(1, "outer", None),))
     pose = Pose(np.zeros((1, 2)), np.zeros((1, 1)))
-    backend = ScikitFem(ScikitFem.Options(tolerance=1e-11), posed)
+    backend = engine(engine.Options(tolerance=1e-11), posed)
     start = Flow.start(backend, bend(layers, None), pose, Bodies.uniform(pose))
-    return start.after(None, twist=np.array([[0.0, 0.0, TURN]]))
+    return start.after(None, twist=np.array([twist]))
 
 
 def turning_torque(material: GeneralisedNewtonian) -> float:

@@ -18,6 +18,7 @@ from rigidfluid.testing.fluid.periodic import PeriodicContract
 from rigidfluid.testing.fluid.responses import ResponsesContract
 from rigidfluid.testing.fluid.stresslets import StressletContract
 from rigidfluid.testing.fluid.transfer import TransferContract
+from rigidfluid.testing.fluid.varying_viscosity import VaryingViscosityContract
 
 
 class FluidBackendContract(
@@ -35,6 +36,7 @@ class FluidBackendContract(
     StressletContract,
     ResponsesContract,
     TransferContract,
+    VaryingViscosityContract,
     MemoryContract,
     OutputContract,
 ):

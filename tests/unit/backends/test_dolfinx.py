@@ -7,9 +7,12 @@ import numpy as np
 import pytest
 from falling import falling_disk
 from scenes import wet_tables
+from sheared_materials import materials, moved_flow
 
+from rigidfluid.backends.scikit_fem import ScikitFem
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.run.simulation import Simulation
+from rigidfluid.testing.fluid.flow import components
 
 pytestmark = pytest.mark.skipif(importlib.util.find_spec("dolfinx") is None, reason="DOLFINx is not installed")
 
@@ -87,6 +90,19 @@ def test_ctrl_c_within_petsc_is_ctrl_c(monkeypatch, solver):
     with pytest.raises(KeyboardInterrupt):
         run.step()
     signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.parametrize("name", ["carreau", "bingham"])
+def test_a_viscosity_varies_where_all_cells_are_curved(name):
+    from rigidfluid.backends.dolfinx import Dolfinx
+
+    twist, given = np.array([1.0, 0.5, 3.0]), []
+    for engine in (ScikitFem, Dolfinx):
+        flow = moved_flow(materials(2)[name], 1, twist, engine)
+        assert flow.backend.numbering_of(flow.mesh).curved_cells.size == len(flow.mesh.cells)
+        given.append(-float(np.sum(components(flow.advance.hydrodynamic_wrench) * twist)))
+        assert flow.advance.dissipation + flow.advance.grad_div == pytest.approx(given[-1], rel=1e-9)
+    assert given[1] == pytest.approx(given[0], rel=1e-2)
 
 
 def test_petscs_options_are_those_of_the_scene():

@@ -8,8 +8,10 @@ from scipy.sparse import csc_array
 
 from rigidfluid.backends.dolfinx.options import DolfinxOptions
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
+from rigidfluid.core.fluid.material import Material, Newtonian
 from rigidfluid.core.geometry.arrays import BoolArray
 from rigidfluid.core.model.extension import Extension
+from rigidfluid.core.model.generalised_newtonian import GeneralisedNewtonian
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.taylor_hood.backend import TaylorHoodBackend
@@ -27,6 +29,7 @@ class Dolfinx(TaylorHoodBackend):
     """Under mpirun each process has a part of the mesh; preconditioners are kept from step to step."""
 
     name: ClassVar[str] = "dolfinx"
+    materials: ClassVar[tuple[type[Material], ...]] = (Newtonian, GeneralisedNewtonian)
     requires: ClassVar[dict[str, str]] = {"dolfinx": "fenics-dolfinx (conda-forge, or python3-dolfinx of Debian 13)"}
     Options: ClassVar[type[PartOptions]] = DolfinxOptions
     options: DolfinxOptions

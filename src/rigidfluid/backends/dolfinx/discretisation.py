@@ -24,7 +24,7 @@ from rigidfluid.taylor_hood.linear_solver.solvers import Solvers
 from rigidfluid.taylor_hood.system.coefficients import coefficients_of
 from rigidfluid.taylor_hood.system.coupled import CoupledMatrix, CoupledSystem, Solution
 from rigidfluid.taylor_hood.system.coupled_projection import CoupledProjection
-from rigidfluid.taylor_hood.system.newtonian import NewtonianOnly
+from rigidfluid.taylor_hood.system.local_viscosity import StrainRates
 
 
 class Topology:
@@ -50,7 +50,7 @@ class Topology:
         self.clean()
 
 
-class PetscDiscretisation(NewtonianOnly):
+class PetscDiscretisation:
     """Pᵀ K P on MPI's processes, solved by a Krylov method; motions that are ``prescribed`` (N,) have a prescribed
     twist.
 
@@ -88,6 +88,14 @@ class PetscDiscretisation(NewtonianOnly):
     def strain_square(self, points: FloatArray, velocity: FloatArray) -> float:
         self._topology.space.move(points)
         return self._topology.forms.strain_square(velocity)
+
+    def strain_rates(self, points: FloatArray, velocity: FloatArray) -> StrainRates:
+        self._topology.space.move(points)
+        return self._topology.forms.strain_rates(velocity)
+
+    def stress_load(self, points: FloatArray, stress: FloatArray) -> FloatArray:
+        self._topology.space.move(points)
+        return self._topology.forms.stress_load(stress)
 
     def divergence_square(self, points: FloatArray, velocity: FloatArray, weight: FloatArray) -> float:
         self._topology.space.move(points)

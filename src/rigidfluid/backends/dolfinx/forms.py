@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from functools import cached_property
 from typing import Any
 
-import numpy as np
 import ufl
 from dolfinx import default_scalar_type, fem
-from dolfinx.mesh import meshtags
 
 from rigidfluid.backends.dolfinx import compat
+from rigidfluid.backends.dolfinx.compiled import compiled
+from rigidfluid.backends.dolfinx.local_stress import LocalStress
+from rigidfluid.backends.dolfinx.measures import Measures
 from rigidfluid.backends.dolfinx.space import Space
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.taylor_hood.system.coefficients import Coefficients
-
-_STRAIGHT, _CURVED = 1, 2
-_DEGREE_IN_CURVED_CELLS = {2: 6, 3: 7}
-"""Degree of convection in curved cells: 2 + 1 + 2 and d - 1 of the map's adjugate."""
-
-_COMPILER = {"cffi_extra_compile_args": ["-O3", "-march=native"]}
+from rigidfluid.taylor_hood.system.local_viscosity import StrainRates
 
 
 class Forms:
@@ -35,21 +31,23 @@ class Forms:
         self._field, self._flow = fem.Function(space.velocity), fem.Function(space.velocity)
         self._weight = fem.Function(fem.functionspace(space.mesh, ("DG", 0)))
         self._inertia, self._viscosity = (fem.Constant(space.mesh, default_scalar_type(0.0)) for _ in range(2))
-        over = _over_cells(space)
+        self._measures = Measures(space)
+        over = self._measures.over
         convected = ufl.dot(ufl.grad(u), self._field) + 0.5 * ufl.div(self._flow) * u
         convection = over(ufl.inner(convected, v), 5)
         inertia = over(self._inertia * ufl.inner(u, v), 4)
         stress = over(self._viscosity * ufl.inner(ufl.grad(u) + ufl.grad(u).T, ufl.grad(v)), 2)
         pressure, divergence = over(-p * ufl.div(v), 2), over(-q * ufl.div(u), 2)
         grad_div = over(self._weight * ufl.div(u) * ufl.div(v), 2)
-        self._matrix = _compiled([[inertia + convection + stress + grad_div, pressure], [divergence, None]])
-        self._without_convection = _compiled([[inertia + stress, pressure], [divergence, None]])
-        self._mass = _compiled(over(ufl.inner(self._field, v), 4))
+        self._velocities, self._rest = (u, v, inertia + convection + grad_div), (pressure, divergence)
+        self._matrix = compiled([[inertia + convection + stress + grad_div, pressure], [divergence, None]])
+        self._without_convection = compiled([[inertia + stress, pressure], [divergence, None]])
+        self._mass = compiled(over(ufl.inner(self._field, v), 4))
         strain = ufl.sym(ufl.grad(self._field))
-        self._strain_square = _compiled(over(2 * ufl.inner(strain, strain), 2))
-        self._divergence_square = _compiled(over(self._weight * ufl.div(self._field) ** 2, 2))
-        self._pressure_mass = _compiled(over(self._weight * p * q, 2))
-        self.pressure_laplacian = _compiled(over(ufl.inner(ufl.grad(p), ufl.grad(q)), 0))
+        self._strain_square = compiled(over(2 * ufl.inner(strain, strain), 2))
+        self._divergence_square = compiled(over(self._weight * ufl.div(self._field) ** 2, 2))
+        self._pressure_mass = compiled(over(self._weight * p * q, 2))
+        self.pressure_laplacian = compiled(over(ufl.inner(ufl.grad(p), ufl.grad(q)), 0))
 
     def new_matrix(self) -> Any:
         """A PETSc matrix for `assemble`: the rows of each process' velocities, then of its pressures."""
@@ -61,6 +59,10 @@ class Forms:
         self._space.set(self._field, coefficients.advection)
         self._space.set(self._flow, coefficients.flow)
         self._space.set_cells(self._weight, coefficients.grad_div)
+        if coefficients.local.varies:
+            self._local.take(coefficients.viscosity, coefficients.local)
+            compat.assemble_block_matrix(matrix, self._with_local_stress)
+            return
         moving = coefficients.advection.any() or coefficients.flow.any()
         compat.assemble_block_matrix(matrix, self._matrix if moving else self._without_convection)
 
@@ -79,27 +81,26 @@ class Forms:
         self._space.set(self._field, velocity)
         return float(fem.assemble_scalar(self._strain_square))
 
+    def strain_rates(self, velocity: FloatArray) -> StrainRates:
+        """∇u + ∇uᵀ at the points by which viscous stress is integrated over this process' cells."""
+        self._space.set(self._field, velocity)
+        return self._local.strain_rates()
+
+    def stress_load(self, stress: FloatArray) -> FloatArray:
+        """(stress, ∇v) for every nodal test function over this process' cells, (nodes, d), of ``stress`` (N, d, d)."""
+        return self._local.load(stress)
+
     def divergence_square(self, velocity: FloatArray, weight: FloatArray) -> float:
         """∫ w (∇·u)² over this process' cells, ``weight`` w (M,)."""
         self._space.set(self._field, velocity)
         self._space.set_cells(self._weight, weight)
         return float(fem.assemble_scalar(self._divergence_square))
 
+    @cached_property
+    def _local(self) -> LocalStress:
+        return LocalStress(self._space, self._measures, self._field)
 
-def _over_cells(space: Space) -> Callable[[Any, int], Any]:
-    """Makes integrals of integrands that have so high a degree in straight cells."""
-    if space.curved is None:
-        return lambda integrand, degree: integrand * ufl.dx(degree=degree)
-    d, cells = space.numbering.dimension, np.arange(len(space.curved), dtype=np.int32)
-    tags = meshtags(space.mesh, d, cells, np.where(space.curved, _CURVED, _STRAIGHT).astype(np.int32))
-    dx = ufl.Measure("dx", domain=space.mesh, subdomain_data=tags)
-
-    def over(integrand: Any, degree: int) -> Any:
-        on_curved = integrand * dx(_CURVED, degree=_DEGREE_IN_CURVED_CELLS[d])
-        return integrand * dx(_STRAIGHT, degree=degree) + on_curved
-
-    return over
-
-
-def _compiled(form: Any) -> Any:
-    return fem.form(form, jit_options=_COMPILER)
+    @cached_property
+    def _with_local_stress(self) -> Any:
+        (u, v, rest), (pressure, divergence) = self._velocities, self._rest
+        return compiled([[rest + self._local.form(u, v), pressure], [divergence, None]])

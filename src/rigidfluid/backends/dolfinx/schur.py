@@ -50,7 +50,9 @@ class CahouetChabard:
         self._data, coefficients = data, data.coefficients
         self._mass = self._laplacian = None
         if coefficients.viscosity > 0.0:
-            mass = data.forms.pressure_mass(1.0 / (2.0 * coefficients.viscosity + coefficients.grad_div))
+            mass = data.forms.pressure_mass(
+                1.0 / (2.0 * coefficients.viscosity * coefficients.local.of_cells + coefficients.grad_div)
+            )
             self._mass = _solver(_assembled(mass), "jacobi", 1e-2)
         if coefficients.inertia > 0.0:
             matrix = _assembled(data.forms.pressure_laplacian)

@@ -46,7 +46,7 @@ class Space:
         self.curved: BoolArray | None = np.isin(cell_nodes, numbering.on_curves).max(axis=1) if curved else None
         self.node_of_dof = _inverse(self.velocity.dofmap.list, cell_nodes, numbering.nodes)
         self.vertex_of_dof = _inverse(self.pressure.dofmap.list, corners, numbering.vertices)
-        self._cell_of_made = _match_cells(corners, numbering.cells)
+        self.cell_of_made = _match_cells(corners, numbering.cells)
         self._nodal = la.vector(self.velocity.dofmap.index_map, d)
         self._scalar = la.vector(self.pressure.dofmap.index_map, 1)
 
@@ -71,7 +71,7 @@ class Space:
 
     def set_cells(self, function: fem.Function, values: FloatArray) -> None:
         """Give a function that is constant in each cell its ``values`` (M,), in the order of ``numbering``."""
-        function.x.array[:] = values[self._cell_of_made]
+        function.x.array[:] = values[self.cell_of_made]
 
     def nodal_field(self, dofs: FloatArray) -> FloatArray:
         """A nodal field (nodes, d) from its values at all local degrees of freedom."""

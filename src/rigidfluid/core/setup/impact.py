@@ -12,8 +12,10 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.shapes import equal_volume_radius, inscribed_radius, shape_key
 from rigidfluid.core.model.body import Body
+from rigidfluid.core.model.generalised_newtonian import GeneralisedNewtonian
 from rigidfluid.core.setup.boundary_samples import points_of, sample_times, sampled_inflows
 from rigidfluid.core.setup.fluid import Fluid
+from rigidfluid.errors import RigidfluidError
 
 if TYPE_CHECKING:
     from rigidfluid.core.setup.model import Model
@@ -21,6 +23,9 @@ if TYPE_CHECKING:
 
 _HALVINGS = 60
 _REYNOLDS = 1e-12, 1e12
+_DOUBLINGS = 20
+"""Most by which a viscosity that varies changes a speed, as often doubled or halved."""
+
 _NEWTON_REYNOLDS, _NEWTON_DRAG = 1000.0, 0.44
 
 Vectors = float | Sequence[float] | FloatArray | None
@@ -84,17 +89,48 @@ def terminal_speeds(model: Model, weight: FloatArray) -> FloatArray:
     3D: C = (24/Re)(1 + 0.15 Re^0.687) up to Re = 1000, then 0.44; 2D: C = 1 + 10 Re^(-2/3), with Re = 2 r ρ v/μ.
     Without inertia F = 6πμ r v in 3D and, since no such law exists in 2D for an unbounded fluid, 4πμ v/ln(L/r) with the
     longest side L of the box around the domain, less than the drag between its walls. The ball has nearly the least
-    drag of all shapes of a volume, so that the speed errs to the fast side.
+    drag of all shapes of a volume, so that the speed errs to the fast side. A viscosity that varies is that of the
+    shear rate v/2r.
 
     Schiller and Naumann, Z. Ver. Dtsch. Ing. 77 (1935) 318; White, Viscous Fluid Flow, McGraw-Hill 2006; Pironneau, J.
     Fluid Mech. 59 (1973) 117, doi:10.1017/S002211207300145X, for the shape of least drag.
     """
+    assert isinstance(model.fluid, Fluid)
+    material = model.fluid.material
+    speeds = _terminal_speeds(model, weight, np.full(len(weight), material.dynamic_viscosity))
+    if not isinstance(material, GeneralisedNewtonian):
+        return speeds
+    try:
+        return _self_consistent_speeds(model, weight, material, speeds)
+    except RigidfluidError:  # it has none at such a rate, which a run tells when it gets there
+        return speeds
+
+
+def _self_consistent_speeds(
+    model: Model, weight: FloatArray, material: GeneralisedNewtonian, speeds: FloatArray
+) -> FloatArray:
+    """Terminal speeds v (n,) with the viscosity at the shear rate v/2r, by doubling or halving the ``speeds`` with one
+    viscosity until they are passed, and bisection from there; unique where the stress grows with the shear rate."""
+    rate = speeds / (2.0 * _measure_bodies(equal_volume_radius, model.shapes))
+    factor, step = np.zeros(len(rate)), np.full(len(rate), np.log(2.0))
+    passed, first = np.zeros(len(rate), dtype=bool), None
+    for _ in range(_DOUBLINGS + _HALVINGS):
+        times = np.exp(factor)
+        faster = _terminal_speeds(model, weight, material.viscosity(times * rate)) > times * speeds
+        first = faster if first is None else first
+        passed |= faster != first
+        step = np.where(passed, 0.5 * step, step)
+        factor += np.where(faster, step, -step)
+    return _terminal_speeds(model, weight, material.viscosity(np.exp(factor) * rate))
+
+
+def _terminal_speeds(model: Model, weight: FloatArray, viscosity: FloatArray) -> FloatArray:
+    """Terminal speed (n,) of each weight with a ``viscosity`` (n,) of its own."""
     fluid = model.fluid
     assert isinstance(fluid, Fluid)
-    density, viscosity = fluid.density, fluid.material.dynamic_viscosity
-    radius = _measure_bodies(equal_volume_radius, model.shapes)
+    density, radius = fluid.density, _measure_bodies(equal_volume_radius, model.shapes)
     if not fluid.inertia:
-        return np.asarray(weight / creeping_resistances(model)[:, 0])
+        return np.asarray(weight / (viscosity * _resistances_per_viscosity(model)[:, 0]))
     per_weight, drag = (8.0 / np.pi, _ball_drag) if model.dimension == 3 else (4.0 * radius, _cylinder_drag)
     reynolds = _reynolds(weight * density / viscosity**2 * per_weight, drag)
     return np.asarray(reynolds * viscosity / (2.0 * radius * density))
@@ -108,14 +144,18 @@ def creeping_resistances(model: Model) -> FloatArray:
     3D, 4πμr² for rotation in 2D and, for translation, 4πμ/ln(L/r) with the longest side L of the box around the domain.
     """
     assert isinstance(model.fluid, Fluid)
-    viscosity, d = model.fluid.material.dynamic_viscosity, model.dimension
-    radius = _measure_bodies(equal_volume_radius, model.shapes)[:, None]
+    return model.fluid.material.dynamic_viscosity * _resistances_per_viscosity(model)
+
+
+def _resistances_per_viscosity(model: Model) -> FloatArray:
+    """`creeping_resistances` at the viscosity 1 (n, d+k)."""
+    d, radius = model.dimension, _measure_bodies(equal_volume_radius, model.shapes)[:, None]
     if d == 3:
         along, about = 6.0 * np.pi * radius, 8.0 * np.pi * radius**3
     else:
         along, about = 4.0 * np.pi / np.log(float(np.max(model.domain.size)) / radius), 4.0 * np.pi * radius**2
     spin = 1 if d == 2 else 3
-    return viscosity * np.hstack([np.repeat(along, d, axis=1), np.repeat(about, spin, axis=1)])
+    return np.hstack([np.repeat(along, d, axis=1), np.repeat(about, spin, axis=1)])
 
 
 def _reynolds(driving: FloatArray, drag: Callable[[FloatArray], FloatArray]) -> FloatArray:

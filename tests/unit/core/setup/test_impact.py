@@ -111,6 +111,21 @@ def test_stokes_without_inertia() -> None:
         assert found[0] == pytest.approx(5.0 / (0.01 * resistance))
 
 
+@pytest.mark.parametrize("model", ["stokes", "navier-stokes"])
+@pytest.mark.parametrize("exponent", [0.2, 0.6, 1.5])
+def test_a_viscosity_that_varies_is_that_of_the_fall(model: str, exponent: float) -> None:
+    """As in a Newtonian fluid whose viscosity is the material's at the shear rate that it gives; 0 without weight."""
+    law = {"type": "power_law", "viscosity": 0.3, "shear_rate": 2.0, "exponent": exponent, "least_shear_rate": 1e-6}
+    pull, given = np.array([5.0, 0.0]), {key: value for key, value in FLUID.items() if key != "viscosity"}
+    bodies = BALL, BALL | {"position": [1.0, 0.5]}
+    thin = model_of(scene(*bodies, fluid=given | {"model": model, "material": law}, mesh=MESH))
+    found = terminal_speeds(thin, pull)
+    viscosity = 0.3 * (found[0] / (2 * RADIUS) / 2.0) ** (exponent - 1.0)
+    newtonian = model_of(scene(*bodies, fluid=FLUID | {"model": model, "viscosity": viscosity}, mesh=MESH))
+    assert viscosity < 0.2 if exponent < 1.0 else viscosity > 0.4
+    assert found == pytest.approx(terminal_speeds(newtonian, pull), rel=1e-9)
+
+
 def test_a_fluid_limits_the_fall_but_not_the_start() -> None:
     thick = FLUID | {"viscosity": 10.0}
     slow = speed(BALL, fluid=thick, mesh=MESH)
