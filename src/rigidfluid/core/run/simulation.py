@@ -490,7 +490,8 @@ class Simulation(Described):
         if self._bars is None:
             return
         with self.watch("error bars"):
-            rows = {"error_estimates": self._bars.rows(self)}
+            found, self.state = self._bars.estimate(self)
+        rows = {"error_estimates": found}
         self.history.extend(rows)
         if self._writer is not None:
             self._writer.extend(rows)
