@@ -207,8 +207,8 @@ and its bar is several times too wide; later ones know those before.
 
 ## A sphere settles in oil
 
-`scenes/ten_cate_e3.toml` with steps of 20 ms, compared with cells of .22 and steps of 10 ms, and its highest speed at an
-output with the measured one, 8.727 cm/s (ten Cate et al. 2002).
+`scenes/ten_cate_e3.toml` with steps of 20 ms, compared with cells of .22 and steps of 10 ms, and its highest speed at
+an output with the measured one, 8.727 cm/s (ten Cate et al. 2002).
 
 {spheres}
 """

@@ -21,8 +21,8 @@ class RefinedFlow(NamedTuple):
 
 
 class Refinement(NamedTuple):
-    """Change by a finer mesh of the motions' ``twist``, the ``wrench`` on the bodies, and the ``velocity`` (nodes, d) of
-    the fluid at its nodes."""
+    """Change by a finer mesh of the motions' ``twist``, the ``wrench`` on the bodies, and the ``velocity`` (nodes, d)
+    of the fluid at its nodes."""
 
     twist: Twist
     wrench: Wrench
