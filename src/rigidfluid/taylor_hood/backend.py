@@ -5,17 +5,18 @@ from __future__ import annotations
 import operator
 from abc import abstractmethod
 from collections.abc import Sequence
-from dataclasses import fields, replace
-from typing import TYPE_CHECKING, ClassVar, TypeVar, final
+from dataclasses import replace
+from typing import TYPE_CHECKING, ClassVar, final
 
 import numpy as np
 from pydantic import Field
 
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.model.flow_error import ErrorRate, MeshVelocity, RefinedFlow, Refinement
 from rigidfluid.core.model.fluid_backend import Filling, FluidBackend
 from rigidfluid.core.model.part import PartOptions
-from rigidfluid.core.model.types import Advance, Fields, FluidState, Mesh, Pose, Response, Step, Twist, Wrench
+from rigidfluid.core.model.types import Advance, Fields, FluidState, Mesh, Pose, Response, Step, Twist
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.system.coupled import CoupledMatrix
 from rigidfluid.taylor_hood.system.discretisation import Discretisation
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
     from rigidfluid.taylor_hood.elements.sampling import Samples
     from rigidfluid.taylor_hood.stepping.scalar_step import ScalarAssembly, ScalarEquations
     from rigidfluid.taylor_hood.system.dimensionless import Dimensionless
-
-Vectors = TypeVar("Vectors", Twist, Wrench)
 
 _PROVISIONAL = 1e-5
 """Relative residual of steps that will be solved again."""
@@ -208,18 +207,28 @@ class TaylorHoodBackend(FluidBackend):
         return np.stack([through, surfaces.pressure_drops(fluid["pressure"])], axis=1)
 
     @final
-    def refinement(self, fluid: FluidState, mesh: Mesh, finer: Mesh, step: Step) -> tuple[Twist, Wrench]:
-        from rigidfluid.taylor_hood.stepping.refined_flow import prolonged, self_convected
+    def refinement(
+        self, flow: RefinedFlow, step: Step, rate: ErrorRate | None, mesh_velocity: MeshVelocity
+    ) -> Refinement:
+        from rigidfluid.taylor_hood.stepping.refined_flow import InPlace, refinement
 
-        def solved(place: Mesh, state: FluidState) -> Advance:
+        def in_place(mesh: Mesh) -> InPlace:
             beside = type(self)(self.options, self.problem)  # the run's own factors stay as they are
-            target = beside._discretisation(place, step.prescribed)
-            placed = on_mesh(replace(step, points=place.geometry), mesh)
-            return self_convected(target, state, place, placed, self.options.tolerance)
+            placed = on_mesh(replace(step, points=mesh.geometry), flow.mesh)
+            return InPlace(beside._discretisation(mesh, step.prescribed), mesh, placed, self.options.tolerance)
 
-        there = prolonged(fluid, self.numbering_of(mesh), mesh, Numbering.from_mesh(finer), finer)
-        own, refined = solved(mesh, fluid), solved(finer, there)
-        return _difference(refined.twist, own.twist), _difference(refined.hydrodynamic_wrench, own.hydrodynamic_wrench)
+        return refinement(in_place(flow.mesh), in_place(flow.finer), flow.fluid, rate, mesh_velocity)
+
+    @final
+    def carried_errors(self, errors: FloatArray, old: RefinedFlow, new: RefinedFlow) -> FloatArray:
+        from rigidfluid.taylor_hood.elements.sampling import Samples
+        from rigidfluid.taylor_hood.stepping.refined_flow import on_finer
+
+        there, before = Numbering.from_mesh(new.finer), Numbering.from_mesh(old.finer)
+        samples = Samples(old.finer, before, there.node_points(new.finer.geometry))
+        velocity = on_finer(old.fluid["velocity"], Numbering.from_mesh(old.mesh), before)
+        right = np.stack([samples.quadratic(velocity + error) for error in errors])
+        return right - on_finer(new.fluid["velocity"], self.numbering_of(new.mesh), there)
 
     @final
     def unknowns(self, mesh: Mesh, prescribed: BoolArray) -> int:
@@ -345,12 +354,6 @@ class TaylorHoodBackend(FluidBackend):
         """A discretisation on this topology, whichever bodies are prescribed."""
         self.numbering_of(mesh)
         return self._projecting_discretisation(mesh) if self._latest is None else self._latest[1]
-
-
-def _difference(vectors: Vectors, others: Vectors) -> Vectors:
-    """Twists or wrenches less others."""
-    names = [each.name for each in fields(vectors)]
-    return replace(vectors, **{name: getattr(vectors, name) - getattr(others, name) for name in names})
 
 
 def on_mesh(step: Step, mesh: Mesh) -> Step:

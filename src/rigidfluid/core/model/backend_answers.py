@@ -10,6 +10,7 @@ import numpy as np
 from rigidfluid.core.geometry.answers import refuse_no_number, refuse_other_rows, refuse_other_shape, refuse_others
 from rigidfluid.core.geometry.value_types import describe
 from rigidfluid.core.geometry.wrong import Wrong
+from rigidfluid.core.model.flow_error import Refinement
 from rigidfluid.core.model.scalar_account import ScalarAccount
 from rigidfluid.core.model.types import Advance, Fields, Response, Step, Twist, Wrench
 
@@ -78,11 +79,12 @@ def _scalar_account(answer: Any, surfaces: int) -> None:
         refuse_other_rows(getattr(answer, name), (surfaces,), f"scalar.{name}", shorter=True)
 
 
-def refinement(answer: Any, part: Any, fluid: Any, mesh: Any, finer: Any, step: Step) -> None:
-    """Refuse what is no difference of all twists and wrenches."""
-    _refuse_other_length(answer, 2)
-    _refuse_other_twist(answer[0], step)
-    _refuse_other_wrench(answer[1], step)
+def refinement(answer: Any, part: Any, flow: Any, step: Step, *_: Any) -> None:
+    """Refuse what is no difference of all twists, wrenches and velocities."""
+    refuse_others(answer, Refinement)
+    _refuse_other_twist(answer.twist, step)
+    _refuse_other_wrench(answer.wrench, step)
+    refuse_other_rows(answer.velocity, np.shape(answer.velocity), "velocity", shorter=True)
 
 
 def response(answer: Any, part: Any, fluid: Any, mesh: Any, step: Step, impulses: Any) -> None:

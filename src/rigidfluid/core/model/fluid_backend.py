@@ -16,6 +16,7 @@ from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.guarded import gives
 from rigidfluid.core.model import backend_answers as backends
 from rigidfluid.core.model.extension import Extension, FactorisedExtension
+from rigidfluid.core.model.flow_error import ErrorRate, MeshVelocity, RefinedFlow, Refinement
 from rigidfluid.core.model.neighbour_step import NeighbourEnd, NeighbourPair, NeighbourStep
 from rigidfluid.core.model.part import Part, PartOptions
 from rigidfluid.core.model.ranks import ALONE, Ranks
@@ -29,7 +30,6 @@ from rigidfluid.core.model.types import (
     SolverCost,
     Step,
     Twist,
-    Wrench,
 )
 
 Filling = Callable[[FloatArray], tuple[BoolArray, FloatArray]]
@@ -186,13 +186,23 @@ class FluidBackend(Part):
         return np.zeros((0, 2))
 
     @gives(backends.refinement)
-    def refinement(self, fluid: FluidState, mesh: Mesh, finer: Mesh, step: Step) -> tuple[Twist, Wrench]:
-        """Change of the twists of the motions and the wrenches on the bodies by the ``finer`` of two meshes, in a
-        ``step`` from ``fluid`` that convects with its own solution; asked of backends with `refinements` alone.
+    def refinement(
+        self, flow: RefinedFlow, step: Step, rate: ErrorRate | None, mesh_velocity: MeshVelocity
+    ) -> Refinement:
+        """Change by the finer of two meshes in a ``step`` from ``flow`` that convects with its own solution; its ∂/∂t
+        has this ``rate`` besides, and both meshes follow the change of the twists with a ``mesh_velocity``. Asked of
+        backends with `refinements` alone.
 
         The vertices of the ``finer`` one are those of the ``mesh``, then the middles of its edges, in the order of
         their vertices. Raises StepRejected where there is no such solution.
         """
+        raise NotImplementedError
+
+    @gives(anything)
+    def carried_errors(self, errors: FloatArray, old: RefinedFlow, new: RefinedFlow) -> FloatArray:
+        """Errors (o, nodes, d) of the velocity of the ``new`` flow that `transfer` has made of an ``old`` one, which
+        had these ``errors``: on finer meshes, with what the transfer has changed; asked where there are
+        `refinements`."""
         raise NotImplementedError
 
     @abstractmethod

@@ -9,6 +9,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.energy import Ledger
+from rigidfluid.core.model.flow_error import FlowError
 from rigidfluid.core.model.reduced_model import Coupling
 from rigidfluid.core.model.scalar_account import ScalarAccount
 from rigidfluid.core.model.tangential_springs import TangentialSprings
@@ -130,7 +131,8 @@ class State:
     ``springs``: those along the surfaces of contacts, None where there are none. ``stresslet`` (n, d, d): by the fluid
     [force·length]; None at the start, and where it is not wanted. ``scalar``: account of the transported scalar over
     the latest step; None at the start, and without one. ``cell_errors`` (M,): squared errors of the mesh's cells in the
-    latest step [energy/time]; None on a new mesh, and where they are not wanted.
+    latest step [energy/time]; None on a new mesh, and where they are not wanted. ``flow_error``: at the latest outputs;
+    None before the first, and without error bars.
     """
 
     tick: int
@@ -160,6 +162,7 @@ class State:
     stresslet: FloatArray | None = None
     scalar: ScalarAccount | None = None
     cell_errors: FloatArray | None = None
+    flow_error: FlowError | None = None
 
     @property
     def is_on_new_mesh(self) -> bool:

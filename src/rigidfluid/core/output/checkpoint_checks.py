@@ -59,6 +59,7 @@ _STATE: Shapes = {
     **{"hydrodynamic_wrench": _wrench("n"), "contact_wrench": _wrench("n"), "applied": _wrench("n")},
     "stresslet": "ndd",
     "cell_errors": "M",
+    "flow_error": {"times": "e", "velocity": "egd", "twist": "eNt"},
     "scalar": {"flux": "r", "value": "r"},
     "motions": {
         **{"pose": _pose("N"), "twist": _twist("N")},

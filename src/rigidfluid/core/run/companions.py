@@ -66,8 +66,9 @@ class Companions:
         return {"sensitivities": list(self._sensitivities.rows((simulation.time, simulation.state.count)))}
 
     def output_rows(self, simulation: Simulation) -> Records:
-        """Rows of the present state that are there at outputs alone."""
+        """Rows of the present state that are there at outputs alone; the state keeps the errors for the next ones."""
         if self._bars is None:
             return {}
         with simulation.watch("error bars"):
-            return {"error_estimates": self._bars.rows(simulation)}
+            rows, simulation.state = self._bars.estimate(simulation)
+        return {"error_estimates": rows}

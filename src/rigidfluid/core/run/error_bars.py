@@ -9,6 +9,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.wrenches import flat
+from rigidfluid.core.model.state import State
 from rigidfluid.core.output.records import Row, moving
 from rigidfluid.core.run.mesh_error import mesh_error, moving_rows
 from rigidfluid.errors import MeshError, StepError, StepRejected
@@ -41,19 +42,16 @@ class ErrorBars:
         """Keep the values of a state, and of the one before it, which the run beside may have reached too."""
         self._own = {**dict([*self._own.items()][-1:]), simulation.time: _values(simulation)}
 
-    def rows(self, simulation: Simulation) -> list[Row]:
-        """A row for each body and mechanism in the present state; none at the start."""
-        if simulation.state.past is None:
-            return []
-        names, stamp = moving(simulation.system), (simulation.time, simulation.state.count)
-        errors = np.stack([self._mesh_errors(simulation), self._step_errors(simulation)], axis=-1)
-        return [(*stamp, name, *row) for name, row in zip(names, errors.reshape(len(names), -1).tolist(), strict=True)]
-
-    def _mesh_errors(self, simulation: Simulation) -> FloatArray:
-        try:
-            return mesh_error(simulation.system, simulation.state, simulation.time)
-        except (StepRejected, MeshError):
-            return np.full_like(_values(simulation), np.nan)
+    def estimate(self, simulation: Simulation) -> tuple[list[Row], State]:
+        """A row for each body and mechanism in the present state, and that state, which knows its error; no rows at the
+        start."""
+        state = simulation.state
+        if state.past is None:
+            return [], state
+        names, stamp = moving(simulation.system), (simulation.time, state.count)
+        by_mesh, state = _mesh_errors(simulation)
+        errors = np.stack([by_mesh, self._step_errors(simulation)], axis=-1)
+        return [(*stamp, name, *row.ravel().tolist()) for name, row in zip(names, errors, strict=True)], state
 
     def _step_errors(self, simulation: Simulation) -> FloatArray:
         state, unknown = simulation.state, np.full_like(_values(simulation), np.nan)
@@ -69,6 +67,16 @@ class ErrorBars:
             return unknown
         latest = max(common)
         return (self._own[latest] - self._other[latest]) / (LONGER**2 - 1)
+
+
+def _mesh_errors(simulation: Simulation) -> tuple[FloatArray, State]:
+    """Errors (r, 2(d+k)) by the mesh, no numbers where they are unknown, and the present state, which knows them."""
+    state = simulation.state
+    try:
+        errors, flow_error = mesh_error(simulation.system, state, simulation.time, simulation.mesh_updater.deform)
+    except (StepRejected, MeshError):
+        return np.full_like(_values(simulation), np.nan), state
+    return errors, replace(state, flow_error=flow_error)
 
 
 def _with_longer_steps(simulation: Simulation) -> Simulation:

@@ -146,6 +146,7 @@ def exchanged(successor: Successor, state: State, updater: Updater, clock: Clock
         ledger=ledger,
         stresslet=None,
         cell_errors=None,
+        flow_error=None,
         remesh_failed=None,
         estimate=None if state.estimate is None else state.estimate.restarted,
         prescription=successor.prescription,

@@ -51,7 +51,8 @@ def test_arrays_of_a_backend_are_finite(written: Checkpoint, value: float, where
 @pytest.mark.parametrize("name", [field.name for field in fields(Contacts)])
 def test_columns_of_contacts_are_of_one_length(written: Checkpoint, name: str) -> None:
     contacts = written.state.contacts
-    contacts = replace(contacts, shift=np.zeros_like(contacts.normal))
+    count, d = contacts.normal.shape
+    contacts = replace(contacts, shift=np.zeros_like(contacts.normal), curvatures=np.zeros((count, 2, d, d)))
     longer = np.zeros((len(contacts) + 1, *getattr(contacts, name).shape[1:]), dtype=getattr(contacts, name).dtype)
     state = replace(written.state, contacts=replace(contacts, **{name: longer}))
     with pytest.raises(Misfit, match="state/contacts"):

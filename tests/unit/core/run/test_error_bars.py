@@ -13,7 +13,12 @@ import rigidfluid
 from rigidfluid.api import FluidBackend, Simulation, model_of
 from rigidfluid.backends.scikit_fem import ScikitFem
 from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
+from rigidfluid.core.mesh.generation.refined_mesh import refined_mesh
+from rigidfluid.core.model.flow_error import RefinedFlow
 from rigidfluid.errors import SceneError
+from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.stepping.refined_flow import prolonged
 
 COARSE = ("mesh.size=0.05", "mesh.size_body=0.02", "time.step=1.0", "time.end=2.0", "output.every=2.0")
 DRAG, LIFT = 5.57953523384, 0.010618948146
@@ -114,3 +119,43 @@ def test_cells_that_follow_an_accuracy_have_estimates_too_and_are_the_same_with_
         np.testing.assert_array_equal(found.bodies[name], without.bodies[name])
         assert np.isfinite(found.error_estimates[f"{name}_mesh"]).all()
         assert np.isfinite(found.error_estimates[f"{name}_steps"]).all()
+
+
+def test_errors_of_a_fall_decay_as_they_do() -> None:
+    """The force is the disk's mass times its acceleration: its error is the rate of that of the speed."""
+    end = {"end": 0.4}
+    coarse = rigidfluid.run(falling(mesh={"size": 0.2, "size_body": 0.06}, time=end))
+    finer = falling(mesh={"size": 0.07, "size_body": 0.015}, time=end, output={"error_bars": False})
+    fine, found = rigidfluid.run(finer), coarse.error_estimates
+    for name in ("vy", "fy"):
+        missing = fine.bodies[name][-1] - coarse.bodies[name][-1]
+        assert 0.7 < found[f"{name}_mesh"][-1] / missing < 1.4
+
+
+def test_errors_on_a_new_mesh_are_those_from_the_flow_before() -> None:
+    """The sum of flow and error is the same at all nodes that both finer meshes have."""
+    simulation = Simulation(model_of(falling()))
+    simulation.go()
+    state, system = simulation.state, simulation.system
+    around, backend = fluid_domain_at(system, state.pose), system.backend
+    assert state.flow_error is not None
+    mesh = refined_mesh(state.mesh, around)
+    fluid, _ = backend.transfer(state.fluid, state.mesh, mesh)
+    old = RefinedFlow(state.fluid, state.mesh, mesh)
+    new = RefinedFlow(fluid, mesh, refined_mesh(mesh, around))
+    carried = backend.carried_errors(state.flow_error.velocity, old, new)
+    before = prolonged(
+        state.fluid, *(numbered for place in old[1:] for numbered in (Numbering.from_mesh(place), place))
+    )
+    shared = len(before["velocity"])
+    sums = before["velocity"] + state.flow_error.velocity
+    assert carried.shape == (2, len(Numbering.from_mesh(new.finer).edges) + shared, 2)
+    assert np.abs(fluid["velocity"] + carried[:, :shared] - sums).max() < 1e-12 * np.abs(sums).max()
+    assert np.abs(carried[:, :shared] - state.flow_error.velocity).max() > 1e-9 * np.abs(sums).max()
+
+
+def test_a_scene_without_bodies_has_no_rows() -> None:
+    disk = {"name": "disk", "type": "sphere", "radius": 0.1, "density": 1.5, "position": [0.5, 0.5]}
+    empty = {"body": [], "output": {"every": 0.04, "error_bars": True}}
+    history = rigidfluid.run(scene_from_dict(wet_tables(disk, end=0.04, step=0.02) | empty))
+    assert len(history.error_estimates["time"]) == 0

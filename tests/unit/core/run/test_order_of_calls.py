@@ -12,6 +12,7 @@ from paths import ROOT
 from rigidfluid.core.coupling.fluid_scheme import FluidScheme
 from rigidfluid.core.mesh.adaptation.mesh_adaptation import MeshUpdater
 from rigidfluid.core.run import step
+from rigidfluid.core.run.recorder import Recorder
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.run.stepper import Stepper
 
@@ -44,7 +45,7 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     recorded(MeshUpdater, "deform", "move the mesh")
     recorded(step, "detect_contacts_and_gaps", "detect contacts")
     recorded(FluidScheme, "_shown", "show the coupling")
-    recorded(Simulation, "_record", "record")
+    recorded(Recorder, "record", "record")
     return made
 
 

@@ -29,11 +29,12 @@ from rigidfluid.core.mesh.mesh_quality import cell_quality, regular_edges
 from rigidfluid.core.mesh.size.equidistribution import Equidistribution
 from rigidfluid.core.mesh.size.size_field import Sizes, wanted_size
 from rigidfluid.core.mesh.size.size_interface import SizeField, with_fields, with_fields_at_rest
+from rigidfluid.core.model.flow_error import FlowError, RefinedFlow
 from rigidfluid.core.model.mesh_error import mesh_error
 from rigidfluid.core.model.replaceable import Replaceable
 from rigidfluid.core.model.state import FailedRemesh, Reference, State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import Mesh, Pose
+from rigidfluid.core.model.types import FluidState, Mesh, Pose
 from rigidfluid.core.model.window import CLEARANCE
 from rigidfluid.errors import MeshError, StepError, StepRejected
 
@@ -134,6 +135,7 @@ class MeshUpdater:
             return replace(state, remesh_failed=FailedRemesh(state.tick, str(error)))
         with self._watch("transfer"):
             fluid, loss = self.system.backend.transfer(state.fluid, state.mesh, mesh)
+            flow_error = self._carried_error(state, fluid, mesh)
         return replace(
             state,
             mesh=mesh,
@@ -142,7 +144,22 @@ class MeshUpdater:
             ledger=state.ledger.after_transfer(loss),
             remesh_failed=None,
             cell_errors=None,
+            flow_error=flow_error,
         )
+
+    def _carried_error(self, state: State, fluid: FluidState, mesh: Mesh) -> FlowError | None:
+        """Errors of a state's flow for the ``fluid`` on a ``mesh`` that was made of it, None where they are unknown."""
+        if state.flow_error is None:
+            return None
+        from rigidfluid.core.mesh.generation.refined_mesh import refined_mesh  # few runs want error bars
+
+        around, flows = fluid_domain_at(self.system, state.pose), ((state.fluid, state.mesh), (fluid, mesh))
+        try:
+            old, new = (RefinedFlow(flow, on, refined_mesh(on, around.placed_on(on))) for flow, on in flows)
+        except MeshError:
+            return None
+        carried = self.system.backend.carried_errors(state.flow_error.velocity, old, new)
+        return replace(state.flow_error, velocity=carried)
 
     def _is_asked_for(self, state: State, pose: Pose) -> bool:
         """Tell whether the rule of re-meshing, which may be the caller's, says so; raises StepError where it says
