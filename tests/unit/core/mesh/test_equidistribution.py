@@ -99,17 +99,18 @@ def test_nothing_is_asked_for_without_an_error() -> None:
 
 def test_another_mesh_is_made_where_it_is_worth_it() -> None:
     """With equal errors, of 10 %: for half of it soon, for a little less and for four times it later, but not for what
-    is nearly there, and where cells may not grow."""
+    is nearly there, for edges that the mesher would leave, and where cells may not grow."""
     error = EstimatedError(np.full(100, 0.01), 100.0)
-    fields = {accuracy: Equidistribution(accuracy, 10**6, 2) for accuracy in (0.05, 0.0999, 0.12, 0.4)}
+    fields = {accuracy: Equidistribution(accuracy, 10**6, 2) for accuracy in (0.05, 0.0999, 0.12, 0.2, 0.4)}
     due = {accuracy: field.is_due(error, 100.0) for accuracy, field in fields.items()}
-    assert due == {0.05: True, 0.0999: True, 0.12: False, 0.4: True}
+    assert due == {0.05: True, 0.0999: True, 0.12: False, 0.2: False, 0.4: True}
     assert not fields[0.4].is_due(error, 100.0, np.ones(100))
     new = {accuracy: [field.is_due(error, age) for age in (3.0, 4.0, 19.0, 20.0)] for accuracy, field in fields.items()}
     assert new == {
         0.05: [False, True, True, True],
         0.0999: [False, False, False, True],
         0.12: [False, False, False, False],
+        0.2: [False, False, False, False],
         0.4: [False, False, False, True],
     }
 
