@@ -8,6 +8,7 @@ from scipy import sparse
 
 from rigidfluid.errors import StepRejected
 from rigidfluid.taylor_hood.linear_solver import lagged_factors
+from rigidfluid.taylor_hood.linear_solver.known_answers import MOST
 from rigidfluid.taylor_hood.linear_solver.lagged_factors import LaggedFactors
 from rigidfluid.taylor_hood.linear_solver.lagged_solver import Operator
 
@@ -73,6 +74,37 @@ def test_columns_take_no_more_sweeps_of_stale_factors_than_there_are_eigenvalues
     np.testing.assert_allclose(matrix @ found, sides, atol=1e-6)
     assert len(applied) == 2
     assert len(made) == 1
+
+
+def test_answers_to_loads_that_come_again_are_first_guesses():
+    """A load that is known takes no sweep of the same matrix, and fewer of one that differs little."""
+    solver, applied = LaggedFactors(2), []
+    near = sparse.csr_array(sparse.diags_array(1.0 + 1e-4 * (np.arange(N) % 7)))
+    sides, loads = np.asfortranarray(np.eye(N)[:, :3] + 1.0), np.eye(3)
+
+    def sweeps(matrix, columns):
+        applied.clear()
+        operator = Operator(lambda x: applied.append(1) or matrix @ x, lambda: of(IDENTITY))
+        found = solver.solve_loads(operator, sides[:, columns], 1e-6, loads[:, columns])
+        np.testing.assert_allclose(matrix @ found, sides[:, columns], atol=2e-5)
+        return len(applied)
+
+    first = sweeps(near, [0, 1])
+    assert sweeps(near, [1, 0]) == 1  # the residual alone
+    assert sweeps(near, [2]) == first
+    assert sweeps(sparse.csr_array(1.001 * near), [0, 1, 2]) == 2
+    solver.forget()
+    assert sweeps(near, [0, 1]) == first
+
+
+def test_no_more_answers_are_kept_than_bodies_may_have():
+    solver, sides = LaggedFactors(2), np.asfortranarray(np.eye(N)[:, : MOST + 2])
+    for loads in (np.eye(MOST + 2), 2.0 * np.eye(MOST + 2)):
+        solver.solve_loads(system(IDENTITY), sides, 1e-9, loads)
+    np.testing.assert_array_equal(solver.memory()["loads"], 2.0 * np.eye(MOST + 2)[:MOST])
+    solver.solve_loads(system(IDENTITY), sides[:, 3:5], 1e-9, 2.0 * np.eye(MOST + 2)[:, 3:5])
+    order = [3, 4, 0, 1, 2, *range(5, MOST)]
+    np.testing.assert_array_equal(solver.memory()["loads"], 2.0 * np.eye(MOST + 2)[order])
 
 
 def test_what_does_not_converge_with_fresh_factors_is_refused():
@@ -147,6 +179,17 @@ def test_another_solver_goes_on_from_a_memory_to_the_last_bit():
         found, again = (solver.solve(system(other), each, 1e-9) for solver in (one, two))
         np.testing.assert_array_equal(found[0], again[0])
         assert found[1] == again[1]
+
+
+def test_another_solver_goes_on_from_the_answers_of_a_memory_to_the_last_bit():
+    near = sparse.csr_array(sparse.diags_array(1.0 + 1e-2 * (np.arange(N) % 7)))
+    sides, loads = np.asfortranarray(np.eye(N)[:, :3] + 1.0), np.eye(3)
+    one, two = LaggedFactors(2), LaggedFactors(2)
+    one.solve(system(IDENTITY), RIGHT, 1e-9)
+    one.solve_loads(system(near), sides[:, :2], 1e-3, loads[:, :2])
+    two.recall(one.memory(), lambda: of(IDENTITY))
+    found, again = (solver.solve_loads(system(near), sides[:, 1:], 1e-6, loads[:, 1:]) for solver in (one, two))
+    np.testing.assert_array_equal(found, again)
 
 
 def test_each_iteration_takes_one_solve_by_the_factors_and_the_end_none(monkeypatch):

@@ -58,15 +58,17 @@ class LaggedFactors(LaggedSolver[Parts]):
         return flexible_gmres(apply, self._factors.solve, residual, tolerance, most, cycles)
 
     def iterate_columns(
-        self, apply: Callable[[FloatArray], FloatArray], right_sides: FloatArray, tolerance: float
+        self, apply: Callable[[FloatArray], FloatArray], right_sides: FloatArray, enough: FloatArray
     ) -> tuple[FloatArray | None, int]:
         """Minimise each column's residual along F⁻¹ times what is left, made conjugate to the direction before: the
         factors serve many columns at once at a quarter of the price of one by one."""
         assert self._factors is not None
-        enough = np.maximum(tolerance * np.linalg.norm(right_sides, axis=0), _LEAST)
+        enough = np.maximum(enough, _LEAST)
         found, left, before = np.zeros_like(right_sides), right_sides, None
-        least, rebuild_cost = np.inf, max(1, right_sides.shape[1] // 4)
+        least, rebuild_cost = _greatest(left, enough), max(1, right_sides.shape[1] // 4)
         for sweep in range(self.most_sweeps):
+            if least <= 1.0:
+                return found, rebuild_cost * max(0, sweep - 1)
             direction = self._factors.solve(left)
             image = np.asfortranarray(apply(direction))  # as the factors' answers are, for sums over columns
             if before is not None:
@@ -74,13 +76,16 @@ class LaggedFactors(LaggedSolver[Parts]):
                 direction, image = direction - along * before[0], image - along * before[1]
             along = _shares(left, image)
             found, left, before = found + along * direction, left - along * image, (direction, image)
-            rest = float(np.max(np.linalg.norm(left, axis=0) / enough, initial=0.0))
-            if rest <= 1.0:
-                return found, rebuild_cost * sweep
+            rest = _greatest(left, enough)
             least, rate = rest, rest / least
             if rate ** (self.most_sweeps - sweep) * rest > 1.0 and sweep > 0:
                 break
-        return None, 0
+        return (found if least <= 1.0 else None), rebuild_cost * (self.most_sweeps - 1)
+
+
+def _greatest(columns: FloatArray, enough: FloatArray) -> float:
+    """Greatest norm of the ``columns`` (N, c) over what is ``enough`` (c,) [1]."""
+    return float(np.max(np.linalg.norm(columns, axis=0) / enough, initial=0.0))
 
 
 def _shares(columns: FloatArray, directions: FloatArray) -> FloatArray:

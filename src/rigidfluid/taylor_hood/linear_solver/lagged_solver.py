@@ -12,6 +12,7 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.ranks import Ranks
 from rigidfluid.errors import StepRejected
+from rigidfluid.taylor_hood.linear_solver.known_answers import KnownAnswers
 
 Matrix = TypeVar("Matrix")
 
@@ -54,6 +55,7 @@ class LaggedSolver(ABC, Generic[Matrix]):
         self._wasted = 0
         self._is_made = False
         self._corrections: tuple[FloatArray, ...] = ()
+        self._answers = KnownAnswers()
 
     @property
     def is_made(self) -> bool:
@@ -62,21 +64,24 @@ class LaggedSolver(ABC, Generic[Matrix]):
 
     @final
     def forget(self) -> None:
-        """Drop the preconditioner and the corrections of earlier solutions."""
+        """Drop the preconditioner, the corrections of earlier solutions, and all answers."""
         self._is_made = False
         self._corrections = ()
+        self._answers = KnownAnswers()
         self.drop()
 
     @final
     def memory(self) -> dict[str, FloatArray]:
         """State of the solver that the next solution depends on, besides the matrix of the preconditioner."""
-        return {"wasted": np.array(float(self._wasted)), "corrections": np.array(self._corrections)}
+        own = {"wasted": np.array(float(self._wasted)), "corrections": np.array(self._corrections)}
+        return own | self._answers.memory()
 
     @final
     def recall(self, memory: Mapping[str, FloatArray], matrix: Callable[[], Matrix]) -> None:
         """Go on from what `memory` gave, with a preconditioner made from that matrix."""
         self._renew(matrix)
         self._wasted, self._corrections = int(memory["wasted"]), tuple(memory["corrections"])
+        self._answers = KnownAnswers.recalled(memory)
 
     @final
     def solve(
@@ -154,23 +159,38 @@ class LaggedSolver(ABC, Generic[Matrix]):
         return found, left
 
     @final
+    def solve_loads(
+        self, operator: Operator[Matrix], right_sides: FloatArray, tolerance: float, loads: FloatArray
+    ) -> FloatArray:
+        """The same as `solve_columns` for the right sides of ``loads`` (t, c), from the latest answers to these on."""
+        known = self._answers if self._is_made else KnownAnswers()
+        guess = known.guess(loads, len(right_sides))
+        found = self.solve_columns(operator, right_sides, tolerance, guess)
+        self._answers = known.with_latest(loads, found)
+        return found
+
+    @final
     def solve_columns(
         self,
         operator: Operator[Matrix],
         right_sides: FloatArray,
         tolerance: float,
+        guess: FloatArray | None = None,
     ) -> FloatArray:
-        """x with A x = each column of ``right_sides`` (N, c), to ``tolerance`` times its norm; raises StepRejected.
+        """x with A x = each column of ``right_sides`` (N, c), to ``tolerance`` times its norm, from a ``guess`` (N, c)
+        on; raises StepRejected.
 
         Iterations wasted by an old preconditioner count like those of a step.
         """
+        enough = np.array([self.sharper * tolerance * self.norm(right_side) for right_side in right_sides.T])
+        left = right_sides if guess is None or not guess.any() else right_sides - operator.apply(guess)
         fresh = not self._is_made
         if fresh:
             self._renew(operator.build)
-        found, wasted = self.iterate_columns(operator.apply, right_sides, self.sharper * tolerance)
+        found, wasted = self.iterate_columns(operator.apply, left, enough)
         if found is None and not fresh:
             self._renew(operator.build)
-            found, wasted = self.iterate_columns(operator.apply, right_sides, self.sharper * tolerance)
+            found, wasted = self.iterate_columns(operator.apply, left, enough)
         self._wasted += wasted
         if found is None:
             self.forget()
@@ -180,7 +200,7 @@ class LaggedSolver(ABC, Generic[Matrix]):
                 "converging ones",
                 "Shorten time.step, or look at the mesh near the bodies.",
             )
-        return found
+        return found if guess is None else guess + found
 
     @final
     def solve_aside(self, operator: Operator[Matrix], right_sides: FloatArray, tolerance: float) -> FloatArray:
@@ -229,16 +249,16 @@ class LaggedSolver(ABC, Generic[Matrix]):
         """The correction, the iterations spent, at ``most``, and whether ‖residual - A x‖ ≤ tolerance was reached."""
 
     def iterate_columns(
-        self, apply: Callable[[FloatArray], FloatArray], right_sides: FloatArray, tolerance: float
+        self, apply: Callable[[FloatArray], FloatArray], right_sides: FloatArray, enough: FloatArray
     ) -> tuple[FloatArray | None, int]:
-        """The solutions (N, c), or None where one was not reached, and the iterations that fresh factors would save."""
+        """The solutions (N, c) to residuals of ``enough`` (c,), or None where one was not reached, and the iterations
+        that fresh factors would save."""
         found, wasted = np.zeros_like(right_sides), 0
-        for column in range(right_sides.shape[1]):
+        for column, residual in enumerate(enough):
             right_side = right_sides[:, column]
-            enough = tolerance * self.norm(right_side)
-            if enough == 0.0:
+            if self.norm(right_side) <= residual:
                 continue
-            found[:, column], iterations, converged = self.iterate(apply, right_side, enough, self.most)
+            found[:, column], iterations, converged = self.iterate(apply, right_side, residual, self.most)
             wasted += max(0, iterations - self.fresh_iterations)
             if not converged:
                 return None, wasted

@@ -241,13 +241,16 @@ class SparseDiscretisation:
 
     def twist_response(self, matrix: CoupledMatrix, wrenches: FloatArray, tolerance: float) -> FloatArray:
         assembled, free = self._assembled(matrix), ~matrix.prescribed
-        found = np.zeros_like(wrenches)
-        responses = self._impulse_response(assembled, wrenches, tolerance)[assembled.twists]
+        found, loads = np.zeros_like(wrenches), wrenches[free].reshape(-1, wrenches.shape[2])
+        given = self._operator(assembled), self._right_sides(assembled, loads), tolerance
+        responses = self._solvers.select(matrix.viscosity).solve_loads(*given, loads)[assembled.twists]
         found[free] = responses.reshape(-1, *wrenches.shape[1:])
         return found
 
     def velocity_response(self, matrix: CoupledMatrix, wrench: FloatArray, tolerance: float) -> FloatArray:
-        response = self._impulse_response(self._assembled(matrix), wrench[:, :, None], tolerance)[:, 0]
+        assembled, loads = self._assembled(matrix), wrench[~matrix.prescribed].reshape(-1, 1)
+        given = self._operator(assembled), self._right_sides(assembled, loads), tolerance
+        response = self._solvers.select(matrix.viscosity).solve_columns(*given)[:, 0]
         size = self.numbering.nodes * self.numbering.dimension
         return np.asarray((self._constraint.matrix @ response)[:size].reshape(self.numbering.nodes, -1))
 
@@ -277,8 +280,10 @@ class SparseDiscretisation:
         directions = memory["mass_matrix"].shape[-1:]
         shapes = {"advection": nodes, "flow": nodes, "position": (count, nodes[1]), "frame": nodes[1:]}
         shapes |= {"mass_matrix": (count, *directions, *directions)}
-        if memory["corrections"].size:
-            shapes["corrections"] = len(memory["corrections"]), self.unknowns
+        twists = self.unknowns - len(self._constraint.free_unknowns)
+        for name, width in (("corrections", self.unknowns), ("answers", self.unknowns), ("loads", twists)):
+            if memory[name].size:
+                shapes[name] = len(memory[name]), width
         for name, shape in shapes.items():
             refuse_other_rows(memory[name], shape, name)
         if LocalViscosity.is_in(memory):
@@ -308,12 +313,11 @@ class SparseDiscretisation:
             local=LocalViscosity.recalled(memory),
         )
 
-    def _impulse_response(self, assembled: _Assembled, wrenches: FloatArray, tolerance: float) -> FloatArray:
-        """All unknowns (unknowns, c) by ``wrenches`` (n, d+k, c) on the bodies alone."""
-        solver = self._solvers.select(assembled.coupled.viscosity)
-        right_sides = np.zeros((self.unknowns, wrenches.shape[2]), order="F")
-        right_sides[assembled.twists] = wrenches[~assembled.coupled.prescribed].reshape(-1, wrenches.shape[2])
-        return solver.solve_columns(self._operator(assembled), right_sides, tolerance)
+    def _right_sides(self, assembled: _Assembled, loads: FloatArray) -> FloatArray:
+        """Right sides (unknowns, c) of ``loads`` (t, c) on the free motions alone."""
+        right_sides = np.zeros((self.unknowns, loads.shape[1]), order="F")
+        right_sides[assembled.twists] = loads
+        return right_sides
 
     def _assembled(self, matrix: CoupledMatrix) -> _Assembled:
         """The latest of a step and the latest of its masses are kept, since both are asked again how bodies answer."""

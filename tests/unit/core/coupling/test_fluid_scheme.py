@@ -13,7 +13,7 @@ from linked_bodies import masses, placed, split
 from rigidfluid.core.contact.path.body_step import undisturbed
 from rigidfluid.core.coupling import fluid_scheme
 from rigidfluid.core.coupling.expected_load import expected_load, load_before
-from rigidfluid.core.coupling.fluid_scheme import _velocities
+from rigidfluid.core.coupling.fluid_scheme import FluidScheme, _velocities
 from rigidfluid.core.coupling.navier_stokes_scheme import NavierStokesScheme
 from rigidfluid.core.coupling.stokes_scheme import StokesScheme
 from rigidfluid.core.geometry.arrays import FloatArray
@@ -93,7 +93,13 @@ def test_a_load_that_was_not_known_does_not_grow() -> None:
     np.testing.assert_array_equal(expected(given, known, STEP), 0.0)
 
 
-def shown(monkeypatch: pytest.MonkeyPatch, used: Coupling, found: ReducedModel, load: FloatArray) -> Coupling:
+def shown(
+    monkeypatch: pytest.MonkeyPatch,
+    used: Coupling,
+    found: ReducedModel,
+    load: FloatArray,
+    scheme: type[FluidScheme] = NavierStokesScheme,
+) -> Coupling:
     """Coupling with the model ``found``, by a first step in which this ``load`` on it, contacts and joints act."""
     contact, link = random(1), random(2)
     monkeypatch.setattr(fluid_scheme, "updated_model", lambda *_: found)
@@ -111,7 +117,7 @@ def shown(monkeypatch: pytest.MonkeyPatch, used: Coupling, found: ReducedModel, 
     )
     step: Any = SimpleNamespace(derivative=np.array([1.0, -1.0, 0.0]) / STEP, impulse=STEP * contact)
     path: Any = SimpleNamespace(motions=after.motions)
-    return NavierStokesScheme(system())._shown(before, after, path, used, step)
+    return scheme(system())._shown(before, after, path, used, step)
 
 
 LOAD = np.array([1.0, -2.0, 3.0])
@@ -131,6 +137,8 @@ def test_what_a_change_of_the_model_adds_to_a_load_is_no_growth(monkeypatch: pyt
     pushed = (random(1) + random(2)).ravel()[VELOCITIES]
     np.testing.assert_allclose(found.load, LOAD)
     np.testing.assert_allclose(found.load - found.load_before, 0.5 * (LOAD - pushed) - used.load_before)
+    without_inertia = shown(monkeypatch, used, heavier, LOAD, StokesScheme)
+    np.testing.assert_array_equal(without_inertia.load_before, used.load_before)
 
 
 def undisturbed_motions(twist: FloatArray) -> Any:
