@@ -50,7 +50,7 @@ SUBJECTS = {
     },
     "Stokes flow and swimmers": {
         "periodic_arrays": "Drag in arrays of cylinders and spheres: compared with published tables",
-        "materials": "Fluids whose viscosity varies: orders of convergence, and the plastic limit of a cylinder's drag",
+        "materials": "Fluids whose viscosity varies: orders, drags between bounds, and their plastic limit",
         "settling_arrays": "Spheres that settle as a cubic array: speeds compared with published drags and speeds",
         "effective_viscosity": "Sheared suspensions: viscosity by walls and by stresslets, compared with Einstein's",
         "swimmer": "A three-sphere swimmer in 2D: distance per cycle compared with two other computations",

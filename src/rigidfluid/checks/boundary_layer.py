@@ -19,7 +19,7 @@ def layer_findings(system: System, mesh: MeshTable) -> Iterator[Finding]:
     problem, speeds = system.fluid, system.loads.travel_speed
     if problem is None or not problem.inertia or speeds is None:
         return
-    layer = thinnest_layer(system.bodies, speeds, problem.material.dynamic_viscosity / problem.density, mesh.size_body)
+    layer = thinnest_layer(system.bodies, speeds, problem.kinematic_viscosity, mesh.size_body)
     if layer is None:
         return
     name = system.surfaces[layer.body]

@@ -28,9 +28,20 @@ def layers(scene: Scene) -> list[Finding]:
 
 
 def test_a_layer_is_a_diameter_over_the_root_of_its_reynolds_number() -> None:
-    bodies = build_system(falling_disk()).bodies
-    np.testing.assert_allclose(boundary_layers(bodies, np.array([4.0]), 0.01), [0.25 / np.sqrt(0.25 * 4.0 / 0.01)])
-    assert boundary_layers(bodies, np.array([0.0]), 0.01)[0] == np.inf
+    system = build_system(falling_disk(fluid={"viscosity": 0.01}))
+    assert system.fluid is not None
+    thickness = boundary_layers(system.bodies, np.array([4.0]), system.fluid.kinematic_viscosity)
+    np.testing.assert_allclose(thickness, [0.25 / np.sqrt(0.25 * 4.0 / 0.01)])
+    assert boundary_layers(system.bodies, np.array([0.0]), system.fluid.kinematic_viscosity)[0] == np.inf
+
+
+def test_a_layer_has_the_viscosity_of_its_shear_rate() -> None:
+    """So the check tells one Reynolds number."""
+    law = {"type": "power_law", "viscosity": 0.1, "shear_rate": 1.0, "exponent": 0.5, "least_shear_rate": 0.01}
+    thinning = falling_disk(fluid={"viscosity": None, "material": law})
+    (layer,), (units,) = layers(thinning), [one for one in check(thinning).findings if one.question == "units"]
+    assert layer.found["reynolds"] == pytest.approx(units.found["reynolds"])
+    assert float(units.found["viscosity"] or 0.0) < 0.05
 
 
 @pytest.mark.parametrize(

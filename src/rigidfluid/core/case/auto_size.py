@@ -45,7 +45,7 @@ def _half_layer(system: System) -> float:
     problem, speeds = system.fluid, system.loads.travel_speed
     if problem is None or not problem.inertia or speeds is None:
         return np.inf
-    layers = boundary_layers(system.bodies, speeds, problem.material.dynamic_viscosity / problem.density)
+    layers = boundary_layers(system.bodies, speeds, problem.kinematic_viscosity)
     return float(layers.min(initial=np.inf)) / CELLS_WANTED
 
 

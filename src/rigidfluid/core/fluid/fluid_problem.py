@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+
 from rigidfluid.core.fluid.conditions import BoundaryCondition
 from rigidfluid.core.fluid.material import Material
 from rigidfluid.core.fluid.scalar import ScalarProblem
@@ -37,6 +39,10 @@ class FluidProblem:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "carrier", self.carrier or tuple(range(self.bodies)))
+
+    def kinematic_viscosity(self, shear_rate: FloatArray) -> FloatArray:
+        """μ/ρ at each shear rate, (N,) [length²/time]."""
+        return np.asarray(self.material.viscosity(shear_rate) / self.density)
 
     @property
     def motions(self) -> int:

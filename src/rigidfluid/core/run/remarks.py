@@ -33,7 +33,7 @@ def layer_remarks(system: System, highest_speed: FloatArray, size_body: float | 
     if size_body is None or problem is None or not problem.inertia:
         return []
     speeds = np.maximum(highest_speed, system.loads.flow_speed)
-    layer = thinnest_layer(system.bodies, speeds, problem.material.dynamic_viscosity / problem.density, size_body)
+    layer = thinnest_layer(system.bodies, speeds, problem.kinematic_viscosity, size_body)
     if layer is None or layer.cells >= CELLS_WANTED:
         return []
     text = (

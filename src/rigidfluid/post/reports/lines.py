@@ -157,13 +157,15 @@ def step_plot(results: Results) -> Figure:
 
 
 def _reynolds_numbers(results: Results, speed: FloatArray) -> dict[str, FloatArray]:
-    """2 R ρ |v| / μ of each body (s, n), by whose density ρ is; empty without a fluid. R as in the summary."""
+    """2 R ρ |v| / μ of each body (s, n), by whose density ρ is; empty without a fluid. R and μ as in the summary."""
     fluid = results.system.fluid
     if fluid is None:
         return {}
-    radius = results.system.bounding_radii
+    diameter = 2.0 * results.system.bounding_radii
+    rate = np.nan_to_num(speed / diameter)
+    viscosity = fluid.material.viscosity(rate.ravel()).reshape(rate.shape)
     solid = np.array([body.density for body in results.model.all_bodies])
-    per_density = 2.0 * radius * speed / fluid.material.dynamic_viscosity
+    per_density = diameter * speed / viscosity
     return {"fluid": per_density * fluid.density, "solid": per_density * solid}
 
 

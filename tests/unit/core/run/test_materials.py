@@ -14,6 +14,8 @@ from rigidfluid.core.setup.assemble import assemble
 from rigidfluid.core.setup.features import features
 from rigidfluid.errors import PluginError, RigidfluidError, SceneError, StepError
 from rigidfluid.post.reports import report
+from rigidfluid.post.reports.lines import speed_plot
+from rigidfluid.post.reports.results import read_results
 
 DISK = {"type": "sphere", "radius": 0.12, "position": [0.5, 0.6], "density": 3.0}
 CARREAU = {
@@ -96,6 +98,13 @@ def test_the_viscosity_is_in_fields_files_and_report(material, tmp_path):
     report(tmp_path)
     assert (tmp_path / "report" / "viscosity.png").exists()
     assert ("yield stress" in (tmp_path / "report.html").read_text()) == (material is BINGHAM)
+
+
+def test_the_report_draws_the_reynolds_number_of_the_summary(tmp_path):
+    rigidfluid.run(scene_from_dict(tables(CARREAU)), tmp_path)
+    results = read_results(tmp_path)
+    (told,) = speed_plot(results).axes[1].texts
+    assert told.get_text() == f"highest {results.summary['reynolds']:.4g}"
 
 
 def test_one_viscosity_has_no_field(tmp_path):

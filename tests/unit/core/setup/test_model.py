@@ -206,7 +206,7 @@ class Dipped(Nut):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda: {"bodies": []}, "body: found nothing"),
+        (lambda: {"bodies": [], "fluid": NoFluid()}, "body: found nothing"),
         (lambda: {"bodies": [replace(DISK, density=-1.0)]}, "RigidBody.density: found -1.0"),
         (lambda: {"bodies": [replace(DISK, density=True)]}, "RigidBody.density: found True"),
         (lambda: {"bodies": [replace(DISK, fixed="no")]}, "RigidBody.fixed: found 'no'"),

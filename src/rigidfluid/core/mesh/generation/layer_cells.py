@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.mechanics.boundary_layer import boundary_layers
-from rigidfluid.core.mechanics.shapes import shape_key
+from rigidfluid.core.mechanics.boundary_layer import Viscosity, boundary_layers
+from rigidfluid.core.mechanics.shapes import equal_volume_radius, shape_key
 from rigidfluid.core.mesh.generation.made_size import facet_edge
 from rigidfluid.core.model.body import Body
 
@@ -29,7 +29,7 @@ class ThinnestLayer(NamedTuple):
 
 
 def thinnest_layer(
-    bodies: Sequence[Body], speeds: FloatArray, kinematic_viscosity: float, size_body: float
+    bodies: Sequence[Body], speeds: FloatArray, kinematic_viscosity: Viscosity, size_body: float
 ) -> ThinnestLayer | None:
     """Boundary layer with the fewest cells of the mean edge on its body; None where nothing moves.
 
@@ -43,5 +43,5 @@ def thinnest_layer(
     edges = {key: facet_edge(body, size_body) for key, body in shapes.items()}
     cells = layers / np.array([edges[shape_key(body)] for body in bodies])
     worst = int(np.argmin(cells))
-    reynolds = layers[worst] ** 2 * (speeds[worst] / kinematic_viscosity) ** 2
+    reynolds = (2.0 * equal_volume_radius(bodies[worst]) / layers[worst]) ** 2
     return ThinnestLayer(worst, float(layers[worst]), float(cells[worst]), float(reynolds))
