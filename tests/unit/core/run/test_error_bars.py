@@ -66,6 +66,15 @@ def test_estimates_change_nothing_and_are_resumed_to_the_last_bit(tmp_path: Path
     assert len(without.error_estimates["time"]) == 0
 
 
+def test_sensitivities_go_on_with_error_bars() -> None:
+    common = {"every": 0.04, "sensitivities": ["body.0.density"]}
+    with_bars, without = (
+        rigidfluid.run(falling(time={"end": 0.08}, output=common | {"error_bars": wanted})) for wanted in (True, False)
+    )
+    assert with_bars.sensitivities["time"][-1] == pytest.approx(0.08)
+    np.testing.assert_array_equal(with_bars.sensitivities["vy"], without.sensitivities["vy"])
+
+
 def test_a_velocity_that_is_given_has_no_error_and_its_force_has_one() -> None:
     moved = {"name": "disk", "type": "sphere", "radius": 0.1, "density": 1.5, "position": [0.5, 0.5]}
     tables = wet_tables(moved | {"prescribed": {"velocity": [0.0, 1.0]}}, end=0.1, step=0.02)
@@ -109,10 +118,11 @@ def test_the_summary_has_the_latest_and_the_greatest() -> None:
     sizes = np.hypot(table["vx_mesh"], table["vy_mesh"])
     assert (found["mesh"], found["greatest_mesh"]) == pytest.approx((sizes[-1], sizes.max()))
     assert found["steps"] > 0.0
+    assert found["bar"] == pytest.approx(1.25 * (found["mesh"] + found["steps"]))
 
 
 def test_errors_of_a_fall_decay_as_they_do() -> None:
-    """The force is the disk's mass times its acceleration: its error is the rate of that of the speed."""
+    """The force is the disk's mass times its acceleration: its error is its mass times the rate of the speed's."""
     end = {"end": 0.4}
     coarse = rigidfluid.run(falling(mesh={"size": 0.2, "size_body": 0.06}, time=end))
     finer = falling(mesh={"size": 0.07, "size_body": 0.015}, time=end, output={"error_bars": False})
