@@ -132,6 +132,19 @@ def test_errors_of_a_fall_decay_as_they_do() -> None:
         assert 0.7 < found[f"{name}_mesh"][-1] / missing < 1.4
 
 
+def test_the_mesh_follows_the_error_of_a_fast_disk() -> None:
+    """With the run's own mesh velocity the estimate is 2.8 times as large as the error."""
+    common = ["time.step=0.008", "time.end=0.24", "output.every=0.04"]
+    coarse, fine = (
+        rigidfluid.run(rigidfluid.load_scene(SCENES / "falling_disk.toml", [*common, *mesh]))
+        for mesh in (
+            ["mesh.size=0.4", "mesh.size_body=0.06", "output.error_bars=true"],
+            ["mesh.size=0.15", "mesh.size_body=0.015"],
+        )
+    )
+    assert 1.0 < coarse.error_estimates["vy_mesh"][-1] / (fine.bodies["vy"][-1] - coarse.bodies["vy"][-1]) < 1.7
+
+
 def test_errors_on_a_new_mesh_are_those_from_the_flow_before() -> None:
     """The sum of flow and error is the same at all nodes that both finer meshes have."""
     simulation = Simulation(model_of(falling()))
