@@ -75,6 +75,7 @@ SUBJECTS = {
         "work_precision": "The falling disk: error against CPU time, compared with NGSolve and OpenFOAM",
         "backends_study": "Fluid backends: error against CPU time",
         "backends": "The cost of a step with each backend, part by part",
+        "error_bars": "Error bars of velocities and forces: compared with true errors",
         "sensitivities": "Derivatives by values of a scene: compared with differences of runs, and their cost",
         "adaptive_step": "Steps by a tolerance: when they pay",
         "step": "One step compared with the same step in NGSolve",

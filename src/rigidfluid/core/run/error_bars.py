@@ -12,6 +12,7 @@ from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.state import State
 from rigidfluid.core.output.records import Row, moving
 from rigidfluid.core.run.mesh_error import mesh_error, moving_rows
+from rigidfluid.core.scene.run_tables import OutputTable
 from rigidfluid.errors import MeshError, StepError, StepRejected
 
 if TYPE_CHECKING:
@@ -86,7 +87,7 @@ def _with_longer_steps(simulation: Simulation) -> Simulation:
     step, shortest = LONGER * time.step, LONGER * time.shortest
     tolerance = None if time.tolerance is None else min(LONGER**2 * time.tolerance, LOOSEST)
     changed = {"step": step, "shortest": shortest, "tolerance": tolerance, "end": LONGER * time.end}
-    output = model.output.model_copy(update={"error_bars": False, "every": max(model.output.every, step), "probes": ()})
+    output = OutputTable(every=max(model.output.every, step))
     return type(simulation)(replace(model, time=time.model_copy(update=changed), output=output))
 
 

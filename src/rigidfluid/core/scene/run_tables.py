@@ -42,5 +42,6 @@ class OutputTable(Table):
     error_bars: bool = Field(
         default=False,
         description="Estimate how wrong the bodies' velocities, forces and torques are by mesh and by step, at each "
-        "`every`; takes about half as long again as the run, and a few steps with four (3D: eight) times the cells",
+        "`every`; takes about half as long again as the run, and at each some ten steps on four (3D: eight) times the "
+        "cells",
     )

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.output.error_figures import error_bars
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import CAUSES, ESTIMATED, quantity_columns
 from rigidfluid.post.reports.curves import MOST_LINES
@@ -33,9 +34,9 @@ class Bars(NamedTuple):
     by_steps: FloatArray
 
     @property
-    def whole(self) -> FloatArray:
-        """Both together (o, n, c); only that by the mesh where the other is unknown."""
-        return self.by_mesh + np.nan_to_num(self.by_steps)
+    def bar(self) -> FloatArray:
+        """Error bars (o, n, c)."""
+        return error_bars(self.by_mesh, self.by_steps)
 
 
 def bars(results: Results, quantity: str) -> Bars | None:
@@ -60,7 +61,7 @@ def draw_bars(axes: Axes, results: Results, quantity: str, component: int | None
     found = bars(results, quantity)
     if found is None or len(results.names) > MOST_LINES:
         return
-    values, errors = results.quantity(quantity)[list(found.states)], found.whole
+    values, errors = results.quantity(quantity)[list(found.states)], found.bar
     if component is None:
         values, errors = (np.asarray(np.linalg.norm(each, axis=-1)) for each in (values, errors))
     else:
@@ -81,8 +82,8 @@ def error_table(results: Results, most: int) -> Iterator[str]:
         time = float(results.time[state])
         names = quantity_columns(results.system.dimension)[quantity]
         for body, k in np.ndindex(min(len(results.names), most), len(names)):
-            errors = (float(each[-1, body, k]) for each in (found.by_mesh, found.by_steps))
+            errors = (float(each[-1, body, k]) for each in (found.bar, found.by_mesh, found.by_steps))
             rows.append((results.names[body], f"{names[k]} {_UNITS[quantity]}", float(values[state, body, k]), *errors))
     yield "<h2>Error bars</h2>"
     yield f"<p>At {time:.5g} [time]; in all outputs they are in error_estimates.csv.</p>"
-    yield grid(("body", "quantity", "value", "± by the mesh", "± by the steps"), rows)
+    yield grid(("body", "quantity", "value", "error bar", "error by the mesh", "error by the steps"), rows)

@@ -66,6 +66,15 @@ def test_estimates_change_nothing_and_are_resumed_to_the_last_bit(tmp_path: Path
     assert len(without.error_estimates["time"]) == 0
 
 
+def test_sensitivities_go_on_with_error_bars() -> None:
+    common = {"every": 0.04, "sensitivities": ["body.0.density"]}
+    with_bars, without = (
+        rigidfluid.run(falling(time={"end": 0.08}, output=common | {"error_bars": wanted})) for wanted in (True, False)
+    )
+    assert with_bars.sensitivities["time"][-1] == pytest.approx(0.08)
+    np.testing.assert_array_equal(with_bars.sensitivities["vy"], without.sensitivities["vy"])
+
+
 def test_a_velocity_that_is_given_has_no_error_and_its_force_has_one() -> None:
     moved = {"name": "disk", "type": "sphere", "radius": 0.1, "density": 1.5, "position": [0.5, 0.5]}
     tables = wet_tables(moved | {"prescribed": {"velocity": [0.0, 1.0]}}, end=0.1, step=0.02)
@@ -109,6 +118,7 @@ def test_the_summary_has_the_latest_and_the_greatest() -> None:
     sizes = np.hypot(table["vx_mesh"], table["vy_mesh"])
     assert (found["mesh"], found["greatest_mesh"]) == pytest.approx((sizes[-1], sizes.max()))
     assert found["steps"] > 0.0
+    assert found["bar"] == pytest.approx(1.25 * (found["mesh"] + found["steps"]))
 
 
 def test_cells_that_follow_an_accuracy_have_estimates_too_and_are_the_same_with_them() -> None:
@@ -122,7 +132,7 @@ def test_cells_that_follow_an_accuracy_have_estimates_too_and_are_the_same_with_
 
 
 def test_errors_of_a_fall_decay_as_they_do() -> None:
-    """The force is the disk's mass times its acceleration: its error is the rate of that of the speed."""
+    """The force is the disk's mass times its acceleration: its error is its mass times the rate of the speed's."""
     end = {"end": 0.4}
     coarse = rigidfluid.run(falling(mesh={"size": 0.2, "size_body": 0.06}, time=end))
     finer = falling(mesh={"size": 0.07, "size_body": 0.015}, time=end, output={"error_bars": False})
@@ -130,6 +140,19 @@ def test_errors_of_a_fall_decay_as_they_do() -> None:
     for name in ("vy", "fy"):
         missing = fine.bodies[name][-1] - coarse.bodies[name][-1]
         assert 0.7 < found[f"{name}_mesh"][-1] / missing < 1.4
+
+
+def test_the_mesh_follows_the_error_of_a_fast_disk() -> None:
+    """With the run's own mesh velocity the estimate is 2.8 times as large as the error."""
+    common = ["time.step=0.008", "time.end=0.24", "output.every=0.04"]
+    coarse, fine = (
+        rigidfluid.run(rigidfluid.load_scene(SCENES / "falling_disk.toml", [*common, *mesh]))
+        for mesh in (
+            ["mesh.size=0.4", "mesh.size_body=0.06", "output.error_bars=true"],
+            ["mesh.size=0.15", "mesh.size_body=0.015"],
+        )
+    )
+    assert 1.0 < coarse.error_estimates["vy_mesh"][-1] / (fine.bodies["vy"][-1] - coarse.bodies["vy"][-1]) < 1.7
 
 
 def test_errors_on_a_new_mesh_are_those_from_the_flow_before() -> None:

@@ -25,14 +25,14 @@ def results(tmp_path_factory):
     return fallen(tmp_path_factory.mktemp("fallen"), error_bars=True)
 
 
-def test_bars_are_the_sizes_of_the_corrections_at_the_outputs(results) -> None:
+def test_bars_are_a_fourth_longer_than_the_corrections_at_the_outputs(results) -> None:
     table, found = (
         np.genfromtxt(results.folder / "error_estimates.csv", delimiter=",", names=True),
         bars(results, "force"),
     )
     assert [results.time[state] for state in found.states] == pytest.approx([0.04, 0.08])
     np.testing.assert_array_equal(found.by_mesh[:, 0, 1], np.abs(table["fy_mesh"]))
-    np.testing.assert_array_equal(found.whole[:, 0, 1], np.abs(table["fy_mesh"]) + np.abs(table["fy_steps"]))
+    np.testing.assert_array_equal(found.bar[:, 0, 1], 1.25 * (np.abs(table["fy_mesh"]) + np.abs(table["fy_steps"])))
 
 
 def test_they_are_drawn_around_the_curves(results) -> None:
@@ -40,15 +40,16 @@ def test_they_are_drawn_around_the_curves(results) -> None:
     draw_bars(axes, results, "force", 1)
     (drawn,) = axes.collections
     ends, found = np.array(drawn.get_segments()), bars(results, "force")
-    np.testing.assert_allclose(np.ptp(ends[:, :, 1], axis=1), 2.0 * found.whole[:, 0, 1])
+    np.testing.assert_allclose(np.ptp(ends[:, :, 1], axis=1), 2.0 * found.bar[:, 0, 1])
     np.testing.assert_allclose(ends[:, :, 1].mean(axis=1), results.quantity("force")[list(found.states), 0, 1])
 
 
-def test_the_table_has_values_with_both_errors(results) -> None:
+def test_the_table_has_values_with_bars_and_both_errors(results) -> None:
     text = "\n".join(error_table(results, 8))
     found = bars(results, "velocity")
-    value, by_mesh, by_steps = results.quantity("velocity")[-1, 0, 1], found.by_mesh[-1, 0, 1], found.by_steps[-1, 0, 1]
-    cells = "".join(f'<td class="n">{number:.5g}</td>' for number in (value, by_mesh, by_steps))
+    errors = [each[-1, 0, 1] for each in (found.bar, found.by_mesh, found.by_steps)]
+    numbers = (results.quantity("velocity")[-1, 0, 1], *errors)
+    cells = "".join(f'<td class="n">{number:.5g}</td>' for number in numbers)
     assert f'<td class="n">vy [length/time]</td>{cells}' in text
 
 
