@@ -3,7 +3,7 @@
 python docs/make_validation.py [NAME ...] [--fresh]     makes these pages, or all; --fresh runs anew what is kept, also
                                                         rows in docs/validation/measured
 python docs/make_validation.py --present [NAME ...]     the same, but for pages that the present sources have made; runs
-                                                        of other sources are made anew; what was stopped goes on
+                                                        of other sources are run again; what was stopped goes on
 python docs/make_validation.py --check [NAME ...]       makes quick pages anew in out/pages, and names those that
                                                         say something else than docs/validation
 python docs/make_validation.py --stale [NAME ...]       names those that are edited, or whose first steps are others now

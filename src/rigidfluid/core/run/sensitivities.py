@@ -19,6 +19,7 @@ from rigidfluid.core.run.initial_state import initial_state
 from rigidfluid.core.run.neighbour_systems import SystemPair, system_pair
 from rigidfluid.core.run.neighbours import Neighbour, Pair, followed
 from rigidfluid.core.run.step import Tools
+from rigidfluid.core.run.stepper import Stepper
 from rigidfluid.core.run.sudden_start import faces_start_at_once
 from rigidfluid.errors import SceneError, StepRejected
 
@@ -33,9 +34,10 @@ _PARTS = {
 class Sensitivities:
     """Derivatives dS/dp of a run's states S along values p of its scene, named by their ``keys``, from its start.
 
-    Two neighbours with p ± h go along: (S₊ - S₋)/2h. In a fluid both are beside the run's own solution y by half the
-    difference of their residuals, K δ = ½ (r₊(y) - r₋(y)), with K and the factors of its own step. They end where the
-    run leaves the steps that have such a derivative; ``ended`` says why, None until then.
+    Two neighbours with p ± h go along: (S₊ - S₋)/2h. In a fluid without contacts both are beside the run's own solution
+    y by half the difference of their residuals, K δ = ½ (r₊(y) - r₋(y)), with K and the factors of its own step; near
+    contacts they take its steps with factors of their own. They end where the run leaves the steps that have such a
+    derivative; ``ended`` says why, None until then.
     """
 
     def __init__(self, document: Mapping[str, Any], tools: Tools, state: State, keys: Sequence[str]) -> None:
@@ -70,9 +72,7 @@ class Sensitivities:
         if system is not self._tools.system or not _is_same(before, self._latest):
             return "the run was changed from outside"
         if after.reference is not before.reference:
-            return "the mesh was made anew"
-        if after.coupling is not None:
-            return "bodies in the fluid were near contacts"
+            return "the domain was re-meshed"
         return None
 
     def _begun(self, pair: SystemPair) -> Pair:
@@ -83,8 +83,9 @@ class Sensitivities:
         tools, state = self._tools, self._latest
         if not _starts_at_rest(system, state):
             state = initial_state(system, _SameMesh(state), tools.clock)
-        own = replace(system, make_backend=tools.system.make_backend)
-        return Neighbour(replace(tools, system=own, scheme=scheme_of(own)), state)
+        shared = replace(system, make_backend=tools.system.make_backend)
+        stepper = Stepper(system, tools.clock, tools.mesh_updater, tools.watch)
+        return Neighbour(replace(tools, system=shared, scheme=scheme_of(shared)), stepper, state)
 
 
 def _refuse_links(system: System) -> None:

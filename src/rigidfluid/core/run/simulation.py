@@ -5,9 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import asdict, fields, replace
+from dataclasses import fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,19 +19,16 @@ from rigidfluid.core.case.population import (
     subjects_by_name,
 )
 from rigidfluid.core.case.scene_model import Case, model_of
-from rigidfluid.core.coupling.contact_forces import contact_forces
 from rigidfluid.core.geometry.value_types import describe
 from rigidfluid.core.model.memory import told_memory
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import FluidState
 from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.fluid_fields import FluidFields
 from rigidfluid.core.output.history import History
-from rigidfluid.core.output.point_sets import point_sets
-from rigidfluid.core.output.records import StepCost, count_cells, joint_coordinates, records
-from rigidfluid.core.output.writer import Writer, has_checkpoint
+from rigidfluid.core.output.records import count_cells, joint_coordinates
+from rigidfluid.core.output.writer import has_checkpoint
 from rigidfluid.core.run.body_now import BodyNow, bodies_now
 from rigidfluid.core.run.caller_input import (
     folder_of,
@@ -53,11 +49,11 @@ from rigidfluid.core.run.initial_state import initial_state
 from rigidfluid.core.run.mesh_keys import updater_of
 from rigidfluid.core.run.observers import Observer, Observers
 from rigidfluid.core.run.process import one_openblas_thread
+from rigidfluid.core.run.recorder import Recorder
 from rigidfluid.core.run.resumption import earlier_of, recall_memory
 from rigidfluid.core.run.run_timer import RunTimer
 from rigidfluid.core.run.saved_run import SavedRun, require_saved
 from rigidfluid.core.run.schedule import Schedule
-from rigidfluid.core.run.step import Tools
 from rigidfluid.core.run.stepper import Counts, Stepper
 from rigidfluid.core.run.stopwatch import Stopwatch
 from rigidfluid.core.run.summary import summarise
@@ -68,10 +64,6 @@ from rigidfluid.core.setup.named_files import file_digests
 from rigidfluid.core.setup.prescribed import PrescribedMotion
 from rigidfluid.described import Described, first_names
 from rigidfluid.errors import ArgumentError, MeshError, OutputError, SceneError, StepError
-
-if TYPE_CHECKING:
-    from rigidfluid.core.run.error_bars import ErrorBars
-    from rigidfluid.core.run.sensitivities import Sensitivities
 
 
 class Simulation(Described):
@@ -107,24 +99,19 @@ class Simulation(Described):
         self._ranks = system.backend.ranks
         require_processes(processes, system.backend)
         self.clock = Clock.for_steps(model.time.step, model.time.shortest, model.time.end)
-        self._files = {} if out is None else file_digests(model.document)
+        files = {} if out is None else file_digests(model.document)
         self._origin, self.population = model, Population()
         earlier = None
         if resume:
-            earlier, self.model, system = earlier_of(model, out, system, self.clock, self._files)
+            earlier, self.model, system = earlier_of(model, out, system, self.clock, files)
             self.population = Population.from_dict(json.loads(earlier.population))
         self.watch = Stopwatch()
         self.mesh_updater = updater_of(model.fluid, system, self.clock, self.watch)
         self.stepper = Stepper(system, self.clock, self.mesh_updater, self.watch, model.time.tolerance)
-        self.history = History(model.dimension, folder=out, coordinates=joint_coordinates(system))
-        self.extremes = Extremes.none(len(system.bodies))
-        self._probes = np.array(model.output.probes, dtype=float).reshape(-1, model.dimension)
+        history = History(model.dimension, folder=out, coordinates=joint_coordinates(system))
+        self.recorder = Recorder(history, Extremes.none(len(system.bodies)), files)
         self._timer = RunTimer()
-        self._times: tuple[float, ...] = ()
-        self._writer: Writer | None = None
         self._observers = Observers()
-        self._sensitivities: Sensitivities | None = None
-        self._bars: ErrorBars | None = None
         try:
             with told_memory(), self._threads():
                 if earlier is None:
@@ -151,6 +138,11 @@ class Simulation(Described):
         if not isinstance(state, State):
             raise ArgumentError("state", describe(state), "a State", "Leave it to the run; `restore` goes back.")
         self._state = state
+
+    @property
+    def history(self) -> History:
+        """Rows of all states until now."""
+        return self.recorder.history
 
     @property
     def alone(self) -> bool:
@@ -185,8 +177,9 @@ class Simulation(Described):
     @property
     def sensitivities_ended(self) -> str | None:
         """Why there are no derivatives from some time on, None where there are, or none are wanted."""
-        if self._sensitivities is not None:
-            return self._sensitivities.ended
+        companions = self.recorder.companions
+        if companions.has_sensitivities:
+            return companions.sensitivities_ended
         return "the run was resumed" if self.model.output.sensitivities else None
 
     @property
@@ -223,17 +216,15 @@ class Simulation(Described):
         OutputError
             Where the disk refuses, or the simulation, which writes to a folder, was closed.
         """
-        self._refuse_closed("a step")
+        self.recorder.refuse_closed("a step")
         if self.ended:
             remedy = "Move time.end in the scene."
             raise StepError("a step", f"one after the end, {self.time:g}", f"steps until {self.clock.end:g}", remedy)
         self._exchange_due()
         with told_memory(), self._threads():
             before, self.state = self.state, self.stepper.after(self.state)
-            if self._sensitivities is not None:
-                with self.watch("sensitivities"):
-                    self._sensitivities.follow(self.system, before, self.state)
-        self._record()
+            self.recorder.companions.follow(self, before)
+        self.recorder.record(self)
         self._observers.call(self)
         return self.state
 
@@ -313,8 +304,8 @@ class Simulation(Described):
     def add(self, body: Mapping[str, object]) -> None:
         """Let a body enter, from now on: in a fluid, in the place of what was there.
 
-        The mesh is made anew around all bodies, the flow is the nearest to the one before that goes with the body, and
-        steps are as short as after a start. Energy that comes with the body is in the column ``exchange`` of the
+        The domain is re-meshed around all bodies, the flow is the nearest to the one before that goes with the body,
+        and steps are as short as after a start. Energy that comes with the body is in the column ``exchange`` of the
         energies.
 
         Parameters
@@ -362,7 +353,7 @@ class Simulation(Described):
             memory=self.system.backend.memory(),
             system=self.system,
             counts=replace(self.counts),
-            extremes=self.extremes,
+            extremes=self.recorder.extremes,
             rows=self.history.lengths,
             reached=self._observers.latest,
         )
@@ -371,16 +362,16 @@ class Simulation(Described):
         """Go back to where the run was saved; raises OutputError where its results go to a folder, SceneError where
         another model's run was saved, or this is no saved run."""
         require_saved(saved, self.model)
-        if self._writer is not None:
+        if self.recorder.folder is not None:
             raise OutputError(
-                str(self._writer.out),
+                str(self.recorder.folder),
                 "a run that writes there and is to go back",
                 "a run in memory",
                 "Make the Simulation without a folder, or resume the run from its checkpoint.",
             )
         self._follow(saved.model, saved.system, saved.population)
         self.system.backend.recall(saved.memory, saved.state.mesh)
-        self.state, self.extremes = saved.state, saved.extremes
+        self.state, self.recorder.extremes = saved.state, saved.extremes
         self.stepper.counts = replace(saved.counts)
         self.history.cut(saved.rows)
         self._observers.go_back(saved.reached)
@@ -388,18 +379,14 @@ class Simulation(Described):
     def finish(self, status: str) -> None:
         """Sum up, in memory and on disk; raises SceneError where the status is no text, OutputError where the disk
         refuses, or the simulation, which writes to a folder, was closed."""
-        self._refuse_closed("a summary")
+        self.recorder.refuse_closed("a summary")
         if not isinstance(status, str):
             raise ArgumentError("status", describe(status), "a text", "Say in a word how the run ended.")
-        self.history.summary = summarise(self, status)
-        self.history.summary["files"] = [] if self._writer is None else self._writer.files
-        if self._writer is not None:
-            self._writer.summary(self.history.summary)
+        self.recorder.finish(summarise(self, status))
 
     def close(self) -> None:
         """Let other runs write to the folder; a simulation that writes takes no step after that."""
-        if self._writer is not None:
-            self._writer.close()
+        self.recorder.close()
 
     def _exchange_due(self) -> None:
         """Let bodies enter and leave by the sources and sinks of the scene."""
@@ -428,7 +415,8 @@ class Simulation(Described):
             except BaseException:
                 self._follow(*before)
                 raise
-        self.extremes = self.extremes.among(next_one.exchange.kept, len(self.system.bodies))
+        kept = next_one.exchange.kept
+        self.recorder.extremes = self.recorder.extremes.among(kept, len(self.system.bodies))
 
     def _follow(self, model: Model, system: System, population: Population) -> None:
         """Go on with a system, of the model's bodies."""
@@ -444,13 +432,8 @@ class Simulation(Described):
             "bodies": first_names(tuple(self.bodies)),
             "cells": count_cells(self.state.mesh) or None,
             "smallest gap": gap if np.isfinite(gap) else None,
-            "folder": None if self._writer is None else self._writer.out,
+            "folder": self.recorder.folder,
         }
-
-    def _refuse_closed(self, wanted: str) -> None:
-        if self._writer is not None and self._writer.closed:
-            remedy = "Make another Simulation, with resume=True to go on."
-            raise OutputError(str(self._writer.out), f"{wanted} after close()", f"{wanted} before it", remedy)
 
     def _threads(self) -> AbstractContextManager[object]:
         """One thread of OpenBLAS in a fluid: without one there are no vectors that it would share out."""
@@ -461,40 +444,18 @@ class Simulation(Described):
             self.state = initial_state(
                 self.system, self.mesh_updater, self.clock, self.model.time.tolerance is not None
             )
-        if self.model.output.sensitivities:
-            self._sensitivities = self._sensitivities_from_now()
+        self.recorder.companions.begin_sensitivities(self)
         if self._ranks.bcast(out is not None and has_checkpoint(out)):
             self._rehearse()
-        self._writer = None if out is None else self._writer_to(out, None)
-        self._record()
-        self._output()
+        if out is not None:
+            self.recorder.write_to(out, self)
+        self.recorder.record(self)
+        self.recorder.output(self)
         self._observe_outputs()
 
     def _observe_outputs(self) -> None:
-        """Write outputs from now on, with error bars if they are wanted."""
-        if self.model.output.error_bars:
-            from rigidfluid.core.run.error_bars import ErrorBars  # few runs want them
-
-            self._bars = ErrorBars(self)
-            self.observe(self._bars.note)
-        self.observe(Simulation._output, self.model.output.every)
-
-    def _sensitivities_from_now(self) -> Sensitivities:
-        from rigidfluid.core.run.sensitivities import Sensitivities  # few scenes have any
-
-        tools = Tools(self.system, self.stepper.scheme, self.clock, self.mesh_updater, self.watch)
-        return Sensitivities(self.model.document, tools, self.state, self.model.output.sensitivities)
-
-    def _estimate_errors(self) -> None:
-        """Add the rows of error bars in the present state, if they are wanted."""
-        if self._bars is None:
-            return
-        with self.watch("error bars"):
-            found, self.state = self._bars.estimate(self)
-        rows = {"error_estimates": found}
-        self.history.extend(rows)
-        if self._writer is not None:
-            self._writer.extend(rows)
+        self.recorder.companions.begin_error_bars(self)
+        self.observe(self.recorder.output, self.model.output.every)
 
     def _rehearse(self) -> None:
         """Try the first step before an earlier run's results are replaced; a scene that cannot start leaves them."""
@@ -507,59 +468,8 @@ class Simulation(Described):
         recall_memory(out, earlier, self.system.backend)
         self.stepper.counts = Counts(**{field.name: getattr(earlier, field.name) for field in fields(Counts)})
         self._timer.add(earlier.elapsed, earlier.cpu_time)
-        self._times = earlier.times
         self.watch.seconds = dict(earlier.seconds)
-        self.extremes = earlier.extremes
         if self.state.prescription is not None:
             self.stepper.system = following(self.system, PrescribedMotion(self.state.prescription))
-        self._writer = self._writer_to(out, earlier)
+        self.recorder.write_to(out, self, earlier)
         self._observe_outputs()
-
-    def _writer_to(self, out: Path, earlier: Checkpoint | None) -> Writer:
-        return Writer(out, self.model.dimension, earlier, self._ranks, joint_coordinates(self.system))
-
-    def _record(self) -> None:
-        level, cost = self.state.level, None
-        if self.state.count > 0 and level is not None:
-            quality = self.mesh_updater.quality(self.state)
-            cost = StepCost(self.clock.size(level), self.counts.remeshes, quality)
-        forces = contact_forces(self.system, self.stepper.scheme, self.state, self.time)
-        now = records(self.system, self._probes, self.state, self.time, cost, forces)
-        if self._sensitivities is not None:
-            now["sensitivities"] = list(self._sensitivities.rows((self.time, self.state.count)))
-        self.history.extend(now)
-        self.extremes = self.extremes.after(self.state.gaps, self.state.twist)
-        if self._writer is not None:
-            with self.watch("write"):
-                self._writer.extend(now)
-
-    def _output(self) -> None:
-        """Write fields, points and a checkpoint; the backend is asked in any case: no result depends on writing."""
-        self._times = (*self._times, self.time)
-        self._estimate_errors()
-        memory = self.system.backend.memory()
-        if self._writer is None:
-            return
-        with self.watch("write"):
-            fields = self.fields() if count_cells(self.state.mesh) else None
-            forces = contact_forces(self.system, self.stepper.scheme, self.state, self.time)
-            self._writer.output(fields, point_sets(self.system, self.state, forces), self._times)
-            self._writer.checkpoint(self._checkpoint(self._writer, memory))
-
-    def _checkpoint(self, writer: Writer, memory: FluidState) -> Checkpoint:
-        return Checkpoint(
-            state=self.state,
-            memory=memory,
-            scene=json.dumps(self.model.document),
-            population=json.dumps(self.population.to_dict()),
-            files=json.dumps(self._files),
-            times=self._times,
-            sizes=writer.sizes,
-            tables=writer.tables,
-            seconds=self.watch.seconds,
-            **asdict(self.counts),
-            elapsed=self.elapsed,
-            cpu_time=self.cpu_time,
-            extremes=self.extremes,
-            ranks=self._ranks.size,
-        )

@@ -118,6 +118,10 @@ class Stepper:
                     spot_check(self.system, new.pose, new.mesh, new.count)
                 return with_cause(self.system, self._clock, state, new)
 
+    def whole_step(self, state: State, level: int) -> State:
+        """State one step of this level later on the same mesh, if that can be; raises StepRejected if not."""
+        return self._tried(state, level, self._path(state, level))[0]
+
     def _judged(self, state: State, candidate: State) -> State:
         """The candidate with an estimate of its error, where that is tolerated."""
         if self._controller is None:

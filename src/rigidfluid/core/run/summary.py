@@ -53,7 +53,7 @@ ENERGIES = (*LEDGER_COLUMNS, "relative_residual", *ACCOUNT, *FLOWS)
 def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
     """All of summary.json but the list of files."""
     account = energy_account(simulation.history.energy)
-    state, system, extremes = simulation.state, simulation.system, simulation.extremes
+    state, system, extremes = simulation.state, simulation.system, simulation.recorder.extremes
     mesh, found, problem = simulation.model.fluid.mesh, _cycles(simulation), system.fluid
     radii = {name: body.bounding_radius for name, body in zip(system.surfaces, system.bodies, strict=False)}
     length = max(radii.values(), default=0.0)
