@@ -38,8 +38,8 @@ def test_quality(monkeypatch, asked, made, worst, anew):
     monkeypatch.setattr(mesh_updater, "_map", lambda reference: (still, None))
     mesh = SimpleNamespace(periods=None, images_of=lambda pose: pose)
     reference = SimpleNamespace(gaps=None, mesh=mesh, pose=None, quality=made, tick=0)
-    ledger = SimpleNamespace(power=None)
-    state: Any = SimpleNamespace(reference=reference, gaps=None, pose=None, tick=1, ledger=ledger)
+    unknown = {"ledger": SimpleNamespace(power=None), "cell_errors": None}
+    state: Any = SimpleNamespace(reference=reference, gaps=None, pose=None, tick=1, **unknown)
     assert mesh_updater.needs_remesh(state, state) is anew
 
 
