@@ -35,6 +35,7 @@ SUBJECTS = {
     },
     "Contacts": {
         "contacts_in_fluid": "Stiff contacts in a fluid: how much energy is created or lost",
+        "energy_of_friction": "Contacts with friction, dry and wet: how much energy is created or lost",
         "stokes_contacts": "Contacts in Stokes flow: approach and rest compared with theory",
         "restitution": "Impacts that lose energy: rebound compared with the formula for Stokes numbers",
         "steel_rebound": "A steel sphere bounces in oil: height and time compared with Gondret et al. (2002)",
