@@ -155,7 +155,7 @@ PAGE = """# Steps with contacts
 Made on {date} by `python benchmarks/contact_step.py --page docs/validation/contact_step.md`. CPU seconds of one thread,
 means over the steps after the graded start; re-meshing is in them. Free steps are of full length; those with an impact
 may be shortened. A contact step is one with a contact in range, or one that
-may come into it. It solves for the fluid about twice, and asks for the answers of the bodies where those have changed
+may come into it. It solves for the fluid once or twice, and asks for the answers of the bodies where those have changed
 ([numerics](../numerics.md#contacts)). What is free of contacts is the same run before; for the column the same over a
 floor far below, and for the hundred disks the same disks further apart. Of the shipped hundred disks it is the steps
 before the first contact; their [whole run](hundred_disks.md) says what contacts took of it.

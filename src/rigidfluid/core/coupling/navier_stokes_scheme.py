@@ -72,7 +72,7 @@ class NavierStokesScheme(FluidScheme):
         return np.zeros_like(missed)
 
     def _read_anew(self, before: FloatArray, change: FloatArray) -> FloatArray:
-        """By as much otherwise: what the change of models adds is no growth."""
+        """Sum of both: what the change of models adds is no growth."""
         return before + change
 
     def _response(self, model: ReducedModel, d0: float, impulse: FloatArray) -> FloatArray:

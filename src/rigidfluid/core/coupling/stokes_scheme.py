@@ -55,7 +55,7 @@ class StokesScheme(FluidScheme):
         return np.asarray(step.derivative[0] * model.mass_times(missed) + model.friction_times(missed))
 
     def _read_anew(self, before: FloatArray, change: FloatArray) -> FloatArray:
-        """As it was: at the start no velocity has changed yet, and drag is nearly all that models differ by."""
+        """The same: at the start no velocity has changed yet, and drag is nearly all that models differ by."""
         return before
 
     def _response(self, model: ReducedModel, d0: float, impulse: FloatArray) -> FloatArray:
