@@ -48,7 +48,9 @@ def page(work: Work) -> Page:
     text += DRAG.format(limit=LIMIT, wide=cylinder(bingham(10), COARSE, WIDE).drag)
     text += _above("Bingham number", {number: cylinders[number].drag for number in BINGHAM}, BINGHAM[1:])
     text += POWER_LAW + _above("n", thin, THINNING) + HALVED
-    text += _halvings({"Bingham number 10": bingham(10), "n = 0.1": power_law(0.1)})
+    text += table(("fluid", *(f"edges of {mesh['size_body']} d" for mesh in MESHES), "changes"), [
+        _halvings("Bingham number 10", bingham(10), cylinders[10].drag), _halvings("n = 0.1", power_law(0.1), thin[0.1])
+    ])  # fmt: skip
     return Page("Fluids whose viscosity varies", text, {"": plot(cylinders)})
 
 
@@ -132,15 +134,15 @@ def _above(first: str, drags: Mapping[float, float], fitted: Sequence[float]) ->
     """Table of drags above the plastic limit, and the power by which those that are ``fitted`` go to it."""
     rows = [(f"{value}", f"{drag:.2f}", f"{drag / LIMIT - 1.0:.1%}") for value, drag in drags.items()]
     power, factor = np.polyfit(np.log(fitted), np.log([drags[value] - LIMIT for value in fitted]), 1)
-    goes = f"It goes to the limit as {np.exp(factor):.1f} times the {power:.2f}th power of the {first}"
+    goes = f"Above the limit it goes as {np.exp(factor):.1f} τ d times {first} to the power {power:.2f}"
     return table((first, "drag / τ d", "above the limit"), rows) + f"\n\n{goes}, a fit to the last {len(fitted)}.\n"
 
 
-def _halvings(fluids: Mapping[str, dict[str, Any]]) -> str:
-    """Table of drags with halved edges."""
-    drags = {name: [cylinder(material, mesh).drag for mesh in MESHES] for name, material in fluids.items()}
-    rows = [(name, *(f"{drag:.4f}" for drag in found), _order(found)) for name, found in drags.items()]
-    return table(("fluid", *(f"edges of {mesh['size_body']} d" for mesh in MESHES), "order"), rows)
+def _halvings(name: str, material: dict[str, Any], finest: float) -> tuple[str, ...]:
+    """Row of drags with halved edges up to the ``finest``, and by how much each halving changes them."""
+    drags = [*(cylinder(material, mesh).drag for mesh in MESHES[:-1]), finest]
+    changes = " and ".join(f"{ratio - 1.0:+.2%}" for ratio in np.divide(drags[1:], drags[:-1]))
+    return (name, *(f"{drag:.3f}" for drag in drags), changes)
 
 
 def _order(found: Sequence[float]) -> str:
@@ -214,6 +216,6 @@ its drag goes to the same limit. It is over K (v/d)ⁿ d here; the fluid is Newt
 """
 
 HALVED = """
-Both on meshes of halved edges:
+Drags over τ d on meshes of halved edges, with τ = τ_y or K (v/d)ⁿ:
 
 """
