@@ -153,11 +153,6 @@ class FluidScheme(ABC):
         """Load (c,) to be added, where the solution of a step has missed the path's end by these velocities (c,)."""
 
     @abstractmethod
-    def _read_anew(self, before: FloatArray, change: FloatArray) -> FloatArray:
-        """Load ``before`` (c,) a step as read with its new model, which has read that at the end by a ``change`` (c,)
-        otherwise than the one before."""
-
-    @abstractmethod
     def _response(self, model: ReducedModel, d0: float, impulse: FloatArray) -> FloatArray:
         """Velocities (c,) at the end of a step by an ``impulse`` (c,) in it."""
 
@@ -179,12 +174,10 @@ class FluidScheme(ABC):
         before = (flat(state.motions.contact) + _applied(state)) * (state.past_step or 0.0)
         applied = _applied(candidate)
         impulses = model.components(step.impulse + (candidate.past_step or 0.0) * applied), model.components(before)
-        given = step.derivative, (twists[0], twists[1], twists[2]), impulses
-        load = load_within(model, *given)
-        before = self._read_anew(used.load_before, load - load_within(used.model, *given))
+        load = load_within(model, step.derivative, (twists[0], twists[1], twists[2]), impulses)
         load = load - used.correction + model.components(applied) - model.components(candidate.link.wrench)
         missed = model.components(flat(path.motions.twist)) - twists[0]
-        return Coupling(model, load, before, used.correction + self._correction(model, step, missed))
+        return Coupling(model, load, used.load_before, used.correction + self._correction(model, step, missed))
 
     def _agree(self, used: Coupling, found: Coupling, path: BodyStep, state: State, candidate: State) -> bool:
         """Compare path and solution: changes of load and responses count by those of velocities at the end."""

@@ -71,10 +71,6 @@ class NavierStokesScheme(FluidScheme):
         """Zero: a fluid with inertia takes the impulse of the path as it is."""
         return np.zeros_like(missed)
 
-    def _read_anew(self, before: FloatArray, change: FloatArray) -> FloatArray:
-        """Sum of both: what the change of models adds is no growth."""
-        return before + change
-
     def _response(self, model: ReducedModel, d0: float, impulse: FloatArray) -> FloatArray:
         """Response M⁻¹ J by the masses alone."""
         return np.asarray(model.inverse_mass @ impulse)

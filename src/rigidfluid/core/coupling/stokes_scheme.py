@@ -54,10 +54,6 @@ class StokesScheme(FluidScheme):
         """Load (d₀M + R) U of velocities U missed: the solution takes the force at the end, not that in the mean."""
         return np.asarray(step.derivative[0] * model.mass_times(missed) + model.friction_times(missed))
 
-    def _read_anew(self, before: FloatArray, change: FloatArray) -> FloatArray:
-        """The same: at the start no velocity has changed yet, and drag is nearly all that models differ by."""
-        return before
-
     def _response(self, model: ReducedModel, d0: float, impulse: FloatArray) -> FloatArray:
         """Response d₀ (d₀M + R)⁻¹ J: by the end of the step drag has damped that of the masses alone."""
         return model.response(d0, impulse)
