@@ -286,7 +286,7 @@ def _swapped(contacts: Contacts, arrangement: Arrangement) -> Contacts:
 
 
 def _check_empty(contacts: Contacts, dimension: int) -> None:
-    for name in (field for field in Contacts.__slots__ if field != "shift"):
+    for name in (field for field in Contacts.__slots__ if field not in ("shift", "curvatures")):
         wide = name in ("point_a", "point_b", "normal")
         assert getattr(contacts, name).shape == ((0, dimension) if wide else (0,)), name
 
