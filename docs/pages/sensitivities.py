@@ -26,6 +26,7 @@ class Case:
     overrides: tuple[str, ...]
     keys: Mapping[str, float]
     columns: tuple[str, ...]
+    tight: tuple[str, ...] = ("fluid.tolerance=1e-12",)
 
 
 CASES = {
@@ -43,12 +44,20 @@ CASES = {
         {"body.0.prescribed.amplitude.1": 0.01, "body.0.prescribed.frequency": 5.0, "fluid.viscosity": 0.1},
         ("y", "vy", "fy"),
     ),
+    "sunk": Case(
+        "a disk sinks onto the floor",
+        "falling_disk.toml",
+        ("time.end=0.03", "body.0.position=[1.0, 0.145]"),
+        {"contact.epsilon_wall": 9e-7, "body.0.density": 1.25, "fluid.viscosity": 0.1},
+        ("y", "vy", "fy"),
+    ),
     "bounce": Case(
         "two disks collide without a fluid",
         "dry_bounce.toml",
         ("time.end=0.008",),
         {"contact.epsilon": 1e-8, "body.1.density": 1.0, "body.0.velocity.0": 20.0},
         ("x", "vx", "cfx"),
+        tight=(),
     ),
 }
 """Cases by the first word of their folders."""
@@ -107,7 +116,7 @@ def _pair(work: Work, label: str, case: Case, key: str) -> tuple[Run, Run]:
     """Runs with values on both sides of that of a ``key``, solved to a residual of 1e-12."""
     value = case.keys[key]
     plus, minus = (f"{key}={value * (1.0 + sign * SHARE)!r}" for sign in (1.0, -1.0))
-    tight = (*case.overrides, "fluid.tolerance=1e-12")
+    tight = (*case.overrides, *case.tight)
     return work.run(f"{label}_plus", case.scene, [*tight, plus]), work.run(
         f"{label}_minus", case.scene, [*tight, minus]
     )
@@ -116,7 +125,7 @@ def _pair(work: Work, label: str, case: Case, key: str) -> tuple[Run, Run]:
 def page(work: Work) -> Page:
     """Derivatives over time, and a table of their errors and costs."""
     found = [Compared(work, name, case) for name, case in CASES.items()]
-    errors = [error for one in found for key in one.case.keys for error in one.errors(key)]
+    greatest = {name: _greatest(one) for name, one in zip(CASES, found, strict=True)}
     rows = [row for one in found for row in _rows(one)]
     head = (
         "",
@@ -125,8 +134,14 @@ def page(work: Work) -> Page:
         "steps",
         "cost of a key over the run's",
     )
-    text = ABOUT.format(table=table(head, rows), greatest=np.nanmax(errors), share=SHARE)
+    sunk = greatest.pop("sunk")
+    elsewhere = max(greatest.values())
+    text = ABOUT.format(table=table(head, rows), greatest=sunk, elsewhere=elsewhere, share=SHARE)
     return Page("Derivatives by values of a scene", text, {"": plot(found[0])})
+
+
+def _greatest(one: Compared) -> float:
+    return float(np.nanmax([one.errors(key) for key in one.case.keys]))
 
 
 def _rows(one: Compared) -> Iterable[tuple[str, ...]]:
@@ -157,6 +172,8 @@ viscosity ("none").
 
 {table}
 
-The greatest error is {greatest:.1e}. The cost is the CPU time that each key adds, over that of the same run without
-derivatives; a difference of two runs costs 2. How derivatives are found, and where they end, is in
+The greatest error is {greatest:.1e}, where the disk sinks onto the floor: near contacts in a fluid path and flow agree
+to a thousandth of a step, and no run is smoother than that in its values. Elsewhere it is {elsewhere:.1e}. The cost
+is the CPU time that each key adds, over that of the same run without derivatives; a difference of two runs costs 2, and
+near contacts a key does too. How derivatives are found, and where they end, is in
 [decision 111](../decisions/111-sensitivities.md)."""
