@@ -115,6 +115,20 @@ def test_another_mesh_is_made_where_it_is_worth_it() -> None:
     }
 
 
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_cells_without_any_error_grow_as_far_as_others_do(dimension: int) -> None:
+    """One whose fluid is at rest, far below the accuracy."""
+    cells = np.full(1000, 1e-7)
+    cells[0] = 0.0
+    error, field = EstimatedError(cells, 1.0), Equidistribution(0.9, 10**6, dimension)
+    assert field.is_due(error, 100.0)
+    mesh = box_mesh(dimension, 4)
+    alike = np.full(len(mesh.cells), 1e-7)
+    partly = np.where(np.arange(len(alike)) == 0, 0.0, alike)
+    found, expected = (wanted(mesh, EstimatedError(each, 1.0), field, apart(dimension)) for each in (partly, alike))
+    np.testing.assert_allclose(found, expected, rtol=1e-12)
+
+
 def channel(**mesh: Any) -> Scene:
     """A disk that is held in a channel."""
     return scene_from_dict({
@@ -177,5 +191,7 @@ def test_auto_sizes_become_numbers() -> None:
 
 
 def test_auto_needs_an_accuracy() -> None:
-    with pytest.raises(SceneError, match=r"mesh.size: found 'auto'; allowed is a number above 0 without `accuracy`"):
-        scene_from_dict({"scene": {"name": "held", "dimension": 2}, "mesh": {"size": "auto"}})
+    refused = r"mesh.size: found 'auto'; allowed is a number above 0 without `accuracy`"
+    for given in ({}, {"accuracy": None}):
+        with pytest.raises(SceneError, match=refused):
+            scene_from_dict({"scene": {"name": "held", "dimension": 2}, "mesh": {"size": "auto"} | given})
