@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,17 @@ import pytest
 from mesh_tools import ball, box, upright
 
 import rigidfluid
-from rigidfluid.api import AtRest, FloatArray, Scene, Simulation, scene_from_dict
+from rigidfluid.api import (
+    AtRest,
+    FloatArray,
+    Flow,
+    PartOptions,
+    Scene,
+    Simulation,
+    SizeField,
+    model_of,
+    scene_from_dict,
+)
 from rigidfluid.core.mesh.flow import FlowOnMesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.size.equidistribution import Equidistribution
@@ -178,6 +189,24 @@ def test_no_mesh_is_made_for_cells_that_others_keep_small() -> None:
     time = scene.time.model_copy(update={"end": 2.5})
     whole = rigidfluid.run(scene.model_copy(update={"body": (disk,), "time": time}))
     assert whole.mesh_error["relative"].max() < 0.1
+    assert whole.summary["remeshes"] == 0
+
+
+class Everywhere(SizeField):
+    """Edges of .06 in all of the fluid."""
+
+    name = "everywhere"
+
+    def edge_length(self, points: FloatArray, around: FluidDomain, flow: Flow) -> FloatArray:
+        return np.full(len(points), 0.06)
+
+
+def test_no_mesh_is_made_for_cells_that_a_size_field_keeps_small() -> None:
+    scene = channel(accuracy=0.3)
+    model = model_of(scene.model_copy(update={"time": scene.time.model_copy(update={"end": 2.5})}))
+    fluid = replace(model.fluid, size_fields=(Everywhere(PartOptions(), 2),))
+    whole = rigidfluid.run(replace(model, fluid=fluid))
+    assert whole.mesh_error["relative"].max() < 0.05
     assert whole.summary["remeshes"] == 0
 
 
