@@ -117,7 +117,7 @@ def _with_size(data: Mapping[str, Any]) -> Mapping[str, Any]:
     mesh = data.get("mesh")
     if not isinstance(mesh, Mapping) or mesh.get("size") != AUTO:
         return data
-    if "accuracy" not in mesh:
+    if mesh.get("accuracy") is None:
         raise SceneError("mesh.size", repr(AUTO), "a number above 0 without `accuracy`", "Add accuracy = 0.05.")
     scene = _tables(tables_now({**data, "mesh": {**mesh, "size": _ANY, "size_body": _ANY}}))
     size = auto_size(scene_domain(scene.domain, Registry.load(), scene.dimension))

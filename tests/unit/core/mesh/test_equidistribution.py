@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,17 @@ import pytest
 from mesh_tools import ball, box, upright
 
 import rigidfluid
-from rigidfluid.api import AtRest, FloatArray, Scene, Simulation, scene_from_dict
+from rigidfluid.api import (
+    AtRest,
+    FloatArray,
+    Flow,
+    PartOptions,
+    Scene,
+    Simulation,
+    SizeField,
+    model_of,
+    scene_from_dict,
+)
 from rigidfluid.core.mesh.flow import FlowOnMesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.size.equidistribution import Equidistribution
@@ -115,6 +126,20 @@ def test_another_mesh_is_made_where_it_is_worth_it() -> None:
     }
 
 
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_cells_without_any_error_grow_as_far_as_others_do(dimension: int) -> None:
+    """One whose fluid is at rest, far below the accuracy."""
+    cells = np.full(1000, 1e-7)
+    cells[0] = 0.0
+    error, field = EstimatedError(cells, 1.0), Equidistribution(0.9, 10**6, dimension)
+    assert field.is_due(error, 100.0)
+    mesh = box_mesh(dimension, 4)
+    alike = np.full(len(mesh.cells), 1e-7)
+    partly = np.where(np.arange(len(alike)) == 0, 0.0, alike)
+    found, expected = (wanted(mesh, EstimatedError(each, 1.0), field, apart(dimension)) for each in (partly, alike))
+    np.testing.assert_allclose(found, expected, rtol=1e-12)
+
+
 def channel(**mesh: Any) -> Scene:
     """A disk that is held in a channel."""
     return scene_from_dict({
@@ -167,6 +192,24 @@ def test_no_mesh_is_made_for_cells_that_others_keep_small() -> None:
     assert whole.summary["remeshes"] == 0
 
 
+class Everywhere(SizeField):
+    """Edges of .06 in all of the fluid."""
+
+    name = "everywhere"
+
+    def edge_length(self, points: FloatArray, around: FluidDomain, flow: Flow) -> FloatArray:
+        return np.full(len(points), 0.06)
+
+
+def test_no_mesh_is_made_for_cells_that_a_size_field_keeps_small() -> None:
+    scene = channel(accuracy=0.3)
+    model = model_of(scene.model_copy(update={"time": scene.time.model_copy(update={"end": 2.5})}))
+    fluid = replace(model.fluid, size_fields=(Everywhere(PartOptions(), 2),))
+    whole = rigidfluid.run(replace(model, fluid=fluid))
+    assert whole.mesh_error["relative"].max() < 0.05
+    assert whole.summary["remeshes"] == 0
+
+
 def test_auto_sizes_become_numbers() -> None:
     mesh = channel().mesh
     assert mesh is not None
@@ -177,5 +220,7 @@ def test_auto_sizes_become_numbers() -> None:
 
 
 def test_auto_needs_an_accuracy() -> None:
-    with pytest.raises(SceneError, match=r"mesh.size: found 'auto'; allowed is a number above 0 without `accuracy`"):
-        scene_from_dict({"scene": {"name": "held", "dimension": 2}, "mesh": {"size": "auto"}})
+    refused = r"mesh.size: found 'auto'; allowed is a number above 0 without `accuracy`"
+    for given in ({}, {"accuracy": None}):
+        with pytest.raises(SceneError, match=refused):
+            scene_from_dict({"scene": {"name": "held", "dimension": 2}, "mesh": {"size": "auto"} | given})

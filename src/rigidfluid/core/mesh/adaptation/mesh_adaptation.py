@@ -19,7 +19,7 @@ from rigidfluid.core.mesh.adaptation.kept_cells import LAYERS
 from rigidfluid.core.mesh.adaptation.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.adaptation.remesh import initial_mesh, remesh, well_cut
 from rigidfluid.core.mesh.distribution import distributed, whole
-from rigidfluid.core.mesh.flow import flow_on
+from rigidfluid.core.mesh.flow import Flow, flow_on
 from rigidfluid.core.mesh.fluid_domain import FluidDomain, fluid_domain_at
 from rigidfluid.core.mesh.generation.coarsen_surface import coarsen_surface
 from rigidfluid.core.mesh.generation.curved_cells import CurvedCells
@@ -129,7 +129,7 @@ class MeshUpdater:
         if self._waits(state.reference, state, pose) or not self._is_asked_for(state, pose):
             return state
         try:
-            mesh = self._remade(state, state.mesh)
+            mesh = self._remade(state)
         except MeshError as error:
             # The present mesh serves until a cell tangles, and most often a later pose can be meshed.
             return replace(state, remesh_failed=FailedRemesh(state.tick, str(error)))
@@ -174,9 +174,9 @@ class MeshUpdater:
         """Quality of the worst cell of the mesh where it is now, curved cells included [1]."""
         return self._placed(state.reference, state.pose)[1]
 
-    def _remade(self, state: State, mesh: Mesh) -> Mesh:
-        s, ranks, present = self.system, mesh.ranks, whole(mesh)
-        flow = flow_on(s.backend, state.fluid, mesh, state.twist, mesh_error(state)) if self._fields else None
+    def _remade(self, state: State) -> Mesh:
+        s, ranks, present = self.system, state.mesh.ranks, whole(state.mesh)
+        flow = self._flow(state, self._fields)
         with ranks.raise_on_all():
             made = Mesh.empty(s.dimension)
             if present is not None:
@@ -184,11 +184,21 @@ class MeshUpdater:
                 if present.periods is not None:
                     present = well_cut(present, around, self._sizes, present.periods.winding)
                     around = fluid_domain_at(s, present.images_of(state.pose))
-                sizes = self._sizes if flow is None else with_fields(self._sizes, self._fields, around, flow)
+                sizes = self._sizes_by(self._fields, around, flow)
                 if around.domain.dimension == 3:  # in 2D what gaps leave behind costs next to nothing
                     present = coarsen_surface(present, around, sizes)
                 made = self._curved(remesh(present, around, sizes, LAYERS), around)
         return distributed(made, ranks)
+
+    def _flow(self, state: State, fields: Sequence[SizeField]) -> Flow | None:
+        """Flow of a ``state`` for size ``fields``, on the root; None without any, and on the other ranks."""
+        if not fields:
+            return None
+        return flow_on(self.system.backend, state.fluid, state.mesh, state.twist, mesh_error(state))
+
+    def _sizes_by(self, fields: Sequence[SizeField], around: FluidDomain, flow: Flow | None) -> Sizes:
+        """Sizes with what ``fields`` ask for in their ``flow``."""
+        return self._sizes if flow is None else with_fields(self._sizes, fields, around, flow)
 
     def _curved(self, mesh: Mesh, fluid_domain: FluidDomain) -> Mesh:
         """Bend the mesh's edges to the order that is asked for, if the backend takes curved cells."""
@@ -232,9 +242,10 @@ class MeshUpdater:
         age = (state.tick - state.reference.tick) / self._renewal.pause
         if accuracy is None or error is None or not accuracy.is_due(error, age):
             return False
-        mesh = state.mesh
+        mesh, fields = state.mesh, [field for field in self._fields if field is not accuracy]
         around = fluid_domain_at(self.system, mesh.images_of(state.pose))
-        others = wanted_size(mesh.points[mesh.cells].mean(axis=1), around, self._sizes)
+        sizes = self._sizes_by(fields, around, self._flow(state, fields))
+        others = wanted_size(mesh.points[mesh.cells].mean(axis=1), around, sizes)
         return accuracy.is_due(error, age, np.maximum(others / regular_edges(mesh.points, mesh.cells), 1.0))
 
     def _sizes_when_made(self, reference: Reference, sizes: Sizes) -> FloatArray:

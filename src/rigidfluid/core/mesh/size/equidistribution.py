@@ -85,8 +85,8 @@ class Equidistribution(SizeField):
     def _changes(self, error: EstimatedError) -> FloatArray:
         """Wanted over present edge length of each cell (M,) [1]."""
         d, order = self.dimension, 2.0 * _ORDER + self.dimension
-        relative = np.maximum(error.cells / error.total, np.finfo(float).tiny)
+        relative, most = error.cells / error.total, _MOST**order
         weight = float(np.sum(relative ** (d / order)))
         target = (_AIM * self.accuracy / error.relative) ** 2
         each = max((target / weight) ** (order / (2.0 * _ORDER)), (weight / self.most_cells) ** (order / d))
-        return np.asarray(np.clip((each / relative) ** (1.0 / order), 1.0 / _MOST, _MOST))
+        return np.asarray((each / np.clip(relative, each / most, each * most)) ** (1.0 / order))
