@@ -37,11 +37,15 @@ class ErrorBars:
         self._beside = _with_longer_steps(simulation)
         self._own = {simulation.time: _values(simulation)}
         self._other = {self._beside.time: _values(self._beside)}
-        self._beside.observe(lambda beside: self._other.update({beside.time: _values(beside)}))
+        self._beside.observe(self._keep)
 
     def note(self, simulation: Simulation) -> None:
         """Keep the values of a state, and of the one before it, which the run beside may have reached too."""
         self._own = {**dict([*self._own.items()][-1:]), simulation.time: _values(simulation)}
+
+    def go_back(self, simulation: Simulation) -> None:
+        """Take up a run that has gone back; the one beside it has been there, or gets there."""
+        self._own = {simulation.time: _values(simulation)}
 
     def estimate(self, simulation: Simulation) -> tuple[list[Row], State]:
         """A row for each body and mechanism in the present state, and that state, which knows its error; no rows at the
@@ -53,6 +57,11 @@ class ErrorBars:
         by_mesh, state = _mesh_errors(simulation)
         errors = np.stack([by_mesh, self._step_errors(simulation)], axis=-1)
         return [(*stamp, name, *row.ravel().tolist()) for name, row in zip(names, errors, strict=True)], state
+
+    def _keep(self, beside: Simulation) -> None:
+        """Keep the values of a state of the run beside, and none of its rows, which nobody reads."""
+        self._other[beside.time] = _values(beside)
+        beside.history.cut({})
 
     def _step_errors(self, simulation: Simulation) -> FloatArray:
         state, unknown = simulation.state, np.full_like(_values(simulation), np.nan)
@@ -67,6 +76,8 @@ class ErrorBars:
         if not common:
             return unknown
         latest = max(common)
+        if simulation.recorder.folder is not None:  # a run that writes there does not go back
+            self._other = {time: values for time, values in self._other.items() if time >= latest}
         return (self._own[latest] - self._other[latest]) / (LONGER**2 - 1)
 
 

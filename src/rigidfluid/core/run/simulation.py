@@ -356,6 +356,7 @@ class Simulation(Described):
             extremes=self.recorder.extremes,
             rows=self.history.lengths,
             reached=self._observers.latest,
+            neighbours=self.recorder.companions.save(),
         )
 
     def restore(self, saved: SavedRun) -> None:
@@ -375,6 +376,7 @@ class Simulation(Described):
         self.stepper.counts = replace(saved.counts)
         self.history.cut(saved.rows)
         self._observers.go_back(saved.reached)
+        self.recorder.companions.go_back(self, saved.neighbours)
 
     def finish(self, status: str) -> None:
         """Sum up, in memory and on disk; raises SceneError where the status is no text, OutputError where the disk

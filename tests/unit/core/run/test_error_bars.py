@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -73,6 +74,29 @@ def test_sensitivities_go_on_with_error_bars() -> None:
     )
     assert with_bars.sensitivities["time"][-1] == pytest.approx(0.08)
     np.testing.assert_array_equal(with_bars.sensitivities["vy"], without.sensitivities["vy"])
+
+
+def test_estimates_are_the_same_after_going_back() -> None:
+    """An output right after the saved state compares with that one, which the longer steps have reached."""
+    simulation = Simulation(model_of(falling(time={"end": 0.1})))
+    simulation.go(0.08)
+    saved = simulation.save()
+    simulation.go()
+    before = simulation.history.error_estimates
+    simulation.restore(saved)
+    simulation.go()
+    assert np.isfinite(before["vy_steps"]).all()
+    for name, values in simulation.history.error_estimates.items():
+        np.testing.assert_array_equal(values, before[name])
+
+
+def test_a_run_in_a_folder_keeps_nothing_of_the_one_beside_it_but_the_latest_states(tmp_path: Path) -> None:
+    with closing(Simulation(model_of(falling()), tmp_path)) as simulation:
+        simulation.go()
+    bars = simulation.recorder.companions._bars
+    assert bars is not None
+    assert bars._beside.history.lengths == {}
+    assert len(bars._other) == 1
 
 
 def test_a_velocity_that_is_given_has_no_error_and_its_force_has_one() -> None:

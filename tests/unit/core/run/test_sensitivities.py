@@ -181,6 +181,20 @@ def test_derivatives_end_where_there_are_none(change: Any, reason: str) -> None:
     assert any(reason in text and f"at time {table['time'][-1]:.6g}" in text for text in texts)
 
 
+def test_derivatives_go_on_after_going_back() -> None:
+    simulation = gone(started(wet(DISK), "fluid.viscosity"), FEW)
+    saved = simulation.save()
+    before = gone(simulation, FEW).history.sensitivities
+    remade(simulation)
+    gone(simulation, 1)
+    simulation.restore(saved)
+    simulation.mesh_updater.needs_remesh = lambda state, pose: False
+    after = gone(simulation, FEW).history.sensitivities
+    assert after["step"].tolist() == before["step"].tolist() == list(range(2 * FEW + 1))
+    for name in ("y", "vy", "fy"):
+        np.testing.assert_allclose(after[name], before[name], rtol=1e-9, atol=0)
+
+
 def test_a_resumed_run_has_those_until_its_checkpoint(tmp_path: Path) -> None:
     tables = wet(DISK, end=0.04)
     tables["output"] |= {"every": 0.02, "sensitivities": ["fluid.viscosity"]}
