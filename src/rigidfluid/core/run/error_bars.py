@@ -11,9 +11,10 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.state import State
 from rigidfluid.core.output.records import Row, moving
+from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.mesh_error import mesh_error, moving_rows
 from rigidfluid.core.scene.run_tables import OutputTable
-from rigidfluid.errors import MeshError, StepError, StepRejected
+from rigidfluid.errors import MeshError, RigidfluidError, StepError, StepRejected
 
 if TYPE_CHECKING:
     from rigidfluid.core.run.simulation import Simulation
@@ -72,7 +73,7 @@ class ErrorBars:
             self._beside.go(simulation.time)
         except StepError:
             return unknown
-        common = [time for time in self._own.keys() & self._other.keys() if time <= simulation.time]
+        common = [time for time in self._own.keys() & self._other.keys() if 0.0 < time <= simulation.time]
         if not common:
             return unknown
         latest = max(common)
@@ -92,14 +93,18 @@ def _mesh_errors(simulation: Simulation) -> tuple[FloatArray, State]:
 
 
 def _with_longer_steps(simulation: Simulation) -> Simulation:
-    """The same run in memory, from its start, in steps of twice the length, which no end cuts short."""
+    """The same run in memory, from its start, in whole steps of twice the length; raises the errors of these."""
     model = simulation.model
     time = model.time
     step, shortest = LONGER * time.step, LONGER * time.shortest
     tolerance = None if time.tolerance is None else min(LONGER**2 * time.tolerance, LOOSEST)
-    changed = {"step": step, "shortest": shortest, "tolerance": tolerance, "end": LONGER * time.end}
+    end = step * Clock(step, 0, time.end).last_tick
+    changed = {"step": step, "shortest": shortest, "tolerance": tolerance, "end": end}
     output = OutputTable(every=max(model.output.every, step))
-    return type(simulation)(replace(model, time=time.model_copy(update=changed), output=output))
+    try:
+        return type(simulation)(replace(model, time=time.model_copy(update=changed), output=output))
+    except RigidfluidError as error:
+        raise error.renamed(lambda subject: f"output.error_bars, with steps of {step:g}: {subject}") from error
 
 
 def _values(simulation: Simulation) -> FloatArray:

@@ -447,16 +447,13 @@ class Simulation(Described):
                 self.system, self.mesh_updater, self.clock, self.model.time.tolerance is not None
             )
         self.recorder.companions.begin_sensitivities(self)
+        self.recorder.companions.begin_error_bars(self)
         if self._ranks.bcast(out is not None and has_checkpoint(out)):
             self._rehearse()
         if out is not None:
             self.recorder.write_to(out, self)
         self.recorder.record(self)
         self.recorder.output(self)
-        self._observe_outputs()
-
-    def _observe_outputs(self) -> None:
-        self.recorder.companions.begin_error_bars(self)
         self.observe(self.recorder.output, self.model.output.every)
 
     def _rehearse(self) -> None:
@@ -473,5 +470,6 @@ class Simulation(Described):
         self.watch.seconds = dict(earlier.seconds)
         if self.state.prescription is not None:
             self.stepper.system = following(self.system, PrescribedMotion(self.state.prescription))
+        self.recorder.companions.begin_error_bars(self)
         self.recorder.write_to(out, self, earlier)
-        self._observe_outputs()
+        self.observe(self.recorder.output, self.model.output.every)

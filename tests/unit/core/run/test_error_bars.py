@@ -99,6 +99,27 @@ def test_a_run_in_a_folder_keeps_nothing_of_the_one_beside_it_but_the_latest_sta
     assert len(bars._other) == 1
 
 
+def test_nothing_is_asked_of_a_scene_after_its_end() -> None:
+    ends = {"on": "left", "type": "velocity", "velocity": ["0.1*sqrt(0.09 - t)", 0.0]}
+    scene = falling(boundary=[ends, {"on": "right", "type": "pressure", "pressure": 0.0}], time={"end": 0.08})
+    found = rigidfluid.run(scene).error_estimates
+    assert np.isfinite(found["vy_steps"][-1])
+
+
+def test_steps_that_are_too_long_beside_are_told_with_their_length_and_leave_earlier_results(tmp_path: Path) -> None:
+    rigidfluid.run(falling(output={"error_bars": False}), tmp_path)
+    before = (tmp_path / "bodies.csv").read_bytes()
+    with pytest.raises(SceneError, match=r"output.error_bars, with steps of 0.04: mesh.remesh_every: found 0.03"):
+        rigidfluid.run(falling(mesh={"remesh_every": 0.03}), tmp_path)
+    assert (tmp_path / "bodies.csv").read_bytes() == before
+
+
+def test_the_start_tells_nothing_of_the_error_by_steps() -> None:
+    """Before the longer steps have been taken once both runs are at the start, where they are the same."""
+    found = rigidfluid.run(falling(output={"every": 0.02, "error_bars": True}, time={"end": 0.04})).error_estimates
+    assert np.isnan(found["vy_steps"]).tolist() == [True, False]
+
+
 def test_a_velocity_that_is_given_has_no_error_and_its_force_has_one() -> None:
     moved = {"name": "disk", "type": "sphere", "radius": 0.1, "density": 1.5, "position": [0.5, 0.5]}
     tables = wet_tables(moved | {"prescribed": {"velocity": [0.0, 1.0]}}, end=0.1, step=0.02)
