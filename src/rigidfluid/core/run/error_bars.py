@@ -9,10 +9,12 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.wrenches import flat
+from rigidfluid.core.model.memory import told_memory
 from rigidfluid.core.model.state import State
 from rigidfluid.core.output.records import Row, moving
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.mesh_error import mesh_error, moving_rows
+from rigidfluid.core.run.process import one_openblas_thread
 from rigidfluid.core.scene.run_tables import OutputTable
 from rigidfluid.errors import MeshError, RigidfluidError, StepError, StepRejected
 
@@ -83,12 +85,16 @@ class ErrorBars:
 
 
 def _mesh_errors(simulation: Simulation) -> tuple[FloatArray, State]:
-    """Errors (r, 2(d+k)) by the mesh, no numbers where they are unknown, and the present state, which knows them."""
+    """Errors (r, 2(d+k)) by the mesh, no numbers where they are unknown, and the present state, which knows them; raises
+    StepError where memory does not suffice."""
     state = simulation.state
     try:
-        errors, flow_error = mesh_error(simulation.system, state, simulation.time, simulation.mesh_updater.deform)
+        with told_memory(), one_openblas_thread():
+            errors, flow_error = mesh_error(simulation.system, state, simulation.time, simulation.mesh_updater.deform)
     except (StepRejected, MeshError):
         return np.full_like(_values(simulation), np.nan), state
+    except StepError as error:
+        raise error.renamed(lambda subject: f"output.error_bars, with halved edges: {subject}") from error
     return errors, replace(state, flow_error=flow_error)
 
 

@@ -17,7 +17,7 @@ from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
 from rigidfluid.core.mesh.generation.refined_mesh import refined_mesh
 from rigidfluid.core.model.flow_error import RefinedFlow
-from rigidfluid.errors import SceneError
+from rigidfluid.errors import SceneError, StepError
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.stepping.refined_flow import prolonged
 
@@ -118,6 +118,15 @@ def test_the_start_tells_nothing_of_the_error_by_steps() -> None:
     """Before the longer steps have been taken once both runs are at the start, where they are the same."""
     found = rigidfluid.run(falling(output={"every": 0.02, "error_bars": True}, time={"end": 0.04})).error_estimates
     assert np.isnan(found["vy_steps"]).tolist() == [True, False]
+
+
+def test_memory_that_halved_edges_lack_is_told_with_the_key(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr(ScikitFem, "refinement", refuse)
+    with pytest.raises(StepError, match=r"output.error_bars, with halved edges: memory: found too little of it"):
+        rigidfluid.run(falling())
 
 
 def test_a_velocity_that_is_given_has_no_error_and_its_force_has_one() -> None:
