@@ -85,8 +85,10 @@ class ErrorBars:
 
 
 def _mesh_errors(simulation: Simulation) -> tuple[FloatArray, State]:
-    """Errors (r, 2(d+k)) by the mesh, no numbers where they are unknown, and the present state, which knows them; raises
-    StepError where memory does not suffice."""
+    """Errors (r, 2(d+k)) by the mesh, no numbers where they are unknown, and the present state, which knows them.
+
+    Raises StepError where memory does not suffice.
+    """
     state = simulation.state
     try:
         with told_memory(), one_openblas_thread():
