@@ -176,8 +176,9 @@ class FluidBackend(Part):
 
     @gives(rows(lambda _, fluid, mesh, points: points.shape[:1], shorter=True))
     def probe_scalar(self, fluid: FluidState, mesh: Mesh, points: FloatArray) -> FloatArray:
-        """The scalar (N,) at ``points`` (N, d), as `probe` gives the rest; asked of backends with `scalars` alone."""
-        raise NotImplementedError
+        """The scalar (N,) at ``points`` (N, d), as `probe` gives the rest; asked of backends with `scalars` alone, no
+        numbers of those that do not tell it."""
+        return np.full(len(points), np.nan)
 
     @gives(backends.driving)
     def driving(self, fluid: FluidState, mesh: Mesh) -> FloatArray:

@@ -10,7 +10,7 @@ from rigidfluid.core.run.step import Tools
 
 if TYPE_CHECKING:
     from rigidfluid.core.run.error_bars import ErrorBars
-    from rigidfluid.core.run.sensitivities import Sensitivities
+    from rigidfluid.core.run.sensitivities import SavedNeighbours, Sensitivities
     from rigidfluid.core.run.simulation import Simulation
 
 
@@ -58,6 +58,17 @@ class Companions:
                 self._sensitivities.follow(simulation.system, before, simulation.state)
         if self._bars is not None:
             self._bars.note(simulation)
+
+    def save(self) -> SavedNeighbours | None:
+        """Keep the neighbours as they are now, None without any."""
+        return None if self._sensitivities is None else self._sensitivities.save()
+
+    def go_back(self, simulation: Simulation, neighbours: SavedNeighbours | None) -> None:
+        """Go along with a run that has gone back to where its ``neighbours`` were saved."""
+        if self._sensitivities is not None and neighbours is not None:
+            self._sensitivities.go_back(neighbours)
+        if self._bars is not None:
+            self._bars.go_back(simulation)
 
     def step_rows(self, simulation: Simulation) -> Records:
         """Rows of the present state."""

@@ -9,11 +9,14 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.wrenches import flat
+from rigidfluid.core.model.memory import told_memory
 from rigidfluid.core.model.state import State
 from rigidfluid.core.output.records import Row, moving
+from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.mesh_error import mesh_error, moving_rows
+from rigidfluid.core.run.process import one_openblas_thread
 from rigidfluid.core.scene.run_tables import OutputTable
-from rigidfluid.errors import MeshError, StepError, StepRejected
+from rigidfluid.errors import MeshError, RigidfluidError, StepError, StepRejected
 
 if TYPE_CHECKING:
     from rigidfluid.core.run.simulation import Simulation
@@ -37,11 +40,15 @@ class ErrorBars:
         self._beside = _with_longer_steps(simulation)
         self._own = {simulation.time: _values(simulation)}
         self._other = {self._beside.time: _values(self._beside)}
-        self._beside.observe(lambda beside: self._other.update({beside.time: _values(beside)}))
+        self._beside.observe(self._keep)
 
     def note(self, simulation: Simulation) -> None:
         """Keep the values of a state, and of the one before it, which the run beside may have reached too."""
         self._own = {**dict([*self._own.items()][-1:]), simulation.time: _values(simulation)}
+
+    def go_back(self, simulation: Simulation) -> None:
+        """Take up a run that has gone back; the one beside it has been there, or gets there."""
+        self._own = {simulation.time: _values(simulation)}
 
     def estimate(self, simulation: Simulation) -> tuple[list[Row], State]:
         """A row for each body and mechanism in the present state, and that state, which knows its error; no rows at the
@@ -54,6 +61,11 @@ class ErrorBars:
         errors = np.stack([by_mesh, self._step_errors(simulation)], axis=-1)
         return [(*stamp, name, *row.ravel().tolist()) for name, row in zip(names, errors, strict=True)], state
 
+    def _keep(self, beside: Simulation) -> None:
+        """Keep the values of a state of the run beside, and none of its rows, which nobody reads."""
+        self._other[beside.time] = _values(beside)
+        beside.history.cut({})
+
     def _step_errors(self, simulation: Simulation) -> FloatArray:
         state, unknown = simulation.state, np.full_like(_values(simulation), np.nan)
         others = moving(self._beside.system) != moving(simulation.system)
@@ -63,32 +75,44 @@ class ErrorBars:
             self._beside.go(simulation.time)
         except StepError:
             return unknown
-        common = [time for time in self._own.keys() & self._other.keys() if time <= simulation.time]
+        common = [time for time in self._own.keys() & self._other.keys() if 0.0 < time <= simulation.time]
         if not common:
             return unknown
         latest = max(common)
+        if simulation.recorder.folder is not None:  # a run that writes there does not go back
+            self._other = {time: values for time, values in self._other.items() if time >= latest}
         return (self._own[latest] - self._other[latest]) / (LONGER**2 - 1)
 
 
 def _mesh_errors(simulation: Simulation) -> tuple[FloatArray, State]:
-    """Errors (r, 2(d+k)) by the mesh, no numbers where they are unknown, and the present state, which knows them."""
+    """Errors (r, 2(d+k)) by the mesh, no numbers where they are unknown, and the present state, which knows them.
+
+    Raises StepError where memory does not suffice.
+    """
     state = simulation.state
     try:
-        errors, flow_error = mesh_error(simulation.system, state, simulation.time, simulation.mesh_updater.deform)
+        with told_memory(), one_openblas_thread():
+            errors, flow_error = mesh_error(simulation.system, state, simulation.time, simulation.mesh_updater.deform)
     except (StepRejected, MeshError):
         return np.full_like(_values(simulation), np.nan), state
+    except StepError as error:
+        raise error.renamed(lambda subject: f"output.error_bars, with halved edges: {subject}") from error
     return errors, replace(state, flow_error=flow_error)
 
 
 def _with_longer_steps(simulation: Simulation) -> Simulation:
-    """The same run in memory, from its start, in steps of twice the length, which no end cuts short."""
+    """The same run in memory, from its start, in whole steps of twice the length; raises the errors of these."""
     model = simulation.model
     time = model.time
     step, shortest = LONGER * time.step, LONGER * time.shortest
     tolerance = None if time.tolerance is None else min(LONGER**2 * time.tolerance, LOOSEST)
-    changed = {"step": step, "shortest": shortest, "tolerance": tolerance, "end": LONGER * time.end}
+    end = step * Clock(step, 0, time.end).last_tick
+    changed = {"step": step, "shortest": shortest, "tolerance": tolerance, "end": end}
     output = OutputTable(every=max(model.output.every, step))
-    return type(simulation)(replace(model, time=time.model_copy(update=changed), output=output))
+    try:
+        return type(simulation)(replace(model, time=time.model_copy(update=changed), output=output))
+    except RigidfluidError as error:
+        raise error.renamed(lambda subject: f"output.error_bars, with steps of {step:g}: {subject}") from error
 
 
 def _values(simulation: Simulation) -> FloatArray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from rigidfluid.core.case.population import Population
 from rigidfluid.core.model.state import State
@@ -12,6 +13,9 @@ from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.run.stepper import Counts
 from rigidfluid.core.setup.model import Model
 from rigidfluid.errors import SceneError
+
+if TYPE_CHECKING:
+    from rigidfluid.core.run.sensitivities import SavedNeighbours
 
 
 @dataclass(frozen=True)
@@ -27,6 +31,7 @@ class SavedRun:
     extremes: Extremes
     rows: dict[str, int]
     reached: tuple[float, ...]
+    neighbours: SavedNeighbours | None
 
 
 def require_saved(saved: object, model: Model) -> None:

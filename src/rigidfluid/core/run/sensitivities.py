@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -29,6 +29,14 @@ _PARTS = {
     "contact_wrench": ("force", "torque"),
 }
 """Parts of a state that are told, besides poses."""
+
+
+class SavedNeighbours(NamedTuple):
+    """Neighbours of a run in its ``latest`` state, and why there are no more from there on."""
+
+    latest: State
+    pairs: list[Pair]
+    ended: str | None
 
 
 class Sensitivities:
@@ -58,6 +66,14 @@ class Sensitivities:
                 self._latest = after
             except StepRejected as error:
                 self.ended = f"a neighbour of the run has failed: {error}"
+
+    def save(self) -> SavedNeighbours:
+        """Keep the neighbours as they are now."""
+        return SavedNeighbours(self._latest, self._pairs, self.ended)
+
+    def go_back(self, saved: SavedNeighbours) -> None:
+        """Go on from where they were saved."""
+        self._latest, self._pairs, self.ended = saved
 
     def rows(self, stamp: Row) -> Iterator[Row]:
         """A row for each value and body, none after the end."""

@@ -356,6 +356,7 @@ class Simulation(Described):
             extremes=self.recorder.extremes,
             rows=self.history.lengths,
             reached=self._observers.latest,
+            neighbours=self.recorder.companions.save(),
         )
 
     def restore(self, saved: SavedRun) -> None:
@@ -375,6 +376,7 @@ class Simulation(Described):
         self.stepper.counts = replace(saved.counts)
         self.history.cut(saved.rows)
         self._observers.go_back(saved.reached)
+        self.recorder.companions.go_back(self, saved.neighbours)
 
     def finish(self, status: str) -> None:
         """Sum up, in memory and on disk; raises SceneError where the status is no text, OutputError where the disk
@@ -445,16 +447,13 @@ class Simulation(Described):
                 self.system, self.mesh_updater, self.clock, self.model.time.tolerance is not None
             )
         self.recorder.companions.begin_sensitivities(self)
+        self.recorder.companions.begin_error_bars(self)
         if self._ranks.bcast(out is not None and has_checkpoint(out)):
             self._rehearse()
         if out is not None:
             self.recorder.write_to(out, self)
         self.recorder.record(self)
         self.recorder.output(self)
-        self._observe_outputs()
-
-    def _observe_outputs(self) -> None:
-        self.recorder.companions.begin_error_bars(self)
         self.observe(self.recorder.output, self.model.output.every)
 
     def _rehearse(self) -> None:
@@ -471,5 +470,6 @@ class Simulation(Described):
         self.watch.seconds = dict(earlier.seconds)
         if self.state.prescription is not None:
             self.stepper.system = following(self.system, PrescribedMotion(self.state.prescription))
+        self.recorder.companions.begin_error_bars(self)
         self.recorder.write_to(out, self, earlier)
-        self._observe_outputs()
+        self.observe(self.recorder.output, self.model.output.every)

@@ -41,7 +41,7 @@ FIGURES = (
     *("time", "unknowns", "cells", "worst_quality", "ranks", "steps", "rejected_steps", "unsettled_steps", "remeshes"),
     *("failed_remeshes", "wall_time", "cpu_time", "wall_time_per_stage"),
     *("reynolds_solid_density", "reynolds", "smallest_gap", "rest_position", "cycles", "remesh_jumps", "energy"),
-    "error_estimates",
+    *("mesh_error", "error_estimates"),
 )
 """Keys of summary.json that hold numbers of a run, or tables and lists of them."""
 ACCOUNT = ("at_hand", "round_off", "put_in", "created", "lost", "unaccounted", "grad_div")

@@ -27,7 +27,11 @@ def check_figure(figure: FigureTable, scene: Scene) -> None:
     """Raise SceneError, with the nearest name that exists, for a figure that this scene's runs will not have."""
     if figure.key is not None:
         table, _, rest = figure.key.partition(".")
-        only_with = {"cycles": scene.mechanism, "error_estimates": scene.output.error_bars}
+        only_with = {
+            "cycles": scene.mechanism,
+            "mesh_error": model_of(scene).fluid.estimates_errors,
+            "error_estimates": scene.output.error_bars,
+        }
         _refuse_unknown("", table, [name for name in FIGURES if only_with.get(name, True)])
         if table == "energy":
             _refuse_unknown("", rest, ENERGIES)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +17,7 @@ from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
 from rigidfluid.core.mesh.generation.refined_mesh import refined_mesh
 from rigidfluid.core.model.flow_error import RefinedFlow
-from rigidfluid.errors import SceneError
+from rigidfluid.errors import SceneError, StepError
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.stepping.refined_flow import prolonged
 
@@ -73,6 +74,59 @@ def test_sensitivities_go_on_with_error_bars() -> None:
     )
     assert with_bars.sensitivities["time"][-1] == pytest.approx(0.08)
     np.testing.assert_array_equal(with_bars.sensitivities["vy"], without.sensitivities["vy"])
+
+
+def test_estimates_are_the_same_after_going_back() -> None:
+    """An output right after the saved state compares with that one, which the longer steps have reached."""
+    simulation = Simulation(model_of(falling(time={"end": 0.1})))
+    simulation.go(0.08)
+    saved = simulation.save()
+    simulation.go()
+    before = simulation.history.error_estimates
+    simulation.restore(saved)
+    simulation.go()
+    assert np.isfinite(before["vy_steps"]).all()
+    for name, values in simulation.history.error_estimates.items():
+        np.testing.assert_array_equal(values, before[name])
+
+
+def test_a_run_in_a_folder_keeps_nothing_of_the_one_beside_it_but_the_latest_states(tmp_path: Path) -> None:
+    with closing(Simulation(model_of(falling()), tmp_path)) as simulation:
+        simulation.go()
+    bars = simulation.recorder.companions._bars
+    assert bars is not None
+    assert bars._beside.history.lengths == {}
+    assert len(bars._other) == 1
+
+
+def test_nothing_is_asked_of_a_scene_after_its_end() -> None:
+    ends = {"on": "left", "type": "velocity", "velocity": ["0.1*sqrt(0.09 - t)", 0.0]}
+    scene = falling(boundary=[ends, {"on": "right", "type": "pressure", "pressure": 0.0}], time={"end": 0.08})
+    found = rigidfluid.run(scene).error_estimates
+    assert np.isfinite(found["vy_steps"][-1])
+
+
+def test_steps_that_are_too_long_beside_are_told_with_their_length_and_leave_earlier_results(tmp_path: Path) -> None:
+    rigidfluid.run(falling(output={"error_bars": False}), tmp_path)
+    before = (tmp_path / "bodies.csv").read_bytes()
+    with pytest.raises(SceneError, match=r"output.error_bars, with steps of 0.04: mesh.remesh_every: found 0.03"):
+        rigidfluid.run(falling(mesh={"remesh_every": 0.03}), tmp_path)
+    assert (tmp_path / "bodies.csv").read_bytes() == before
+
+
+def test_the_start_tells_nothing_of_the_error_by_steps() -> None:
+    """Before the longer steps have been taken once both runs are at the start, where they are the same."""
+    found = rigidfluid.run(falling(output={"every": 0.02, "error_bars": True}, time={"end": 0.04})).error_estimates
+    assert np.isnan(found["vy_steps"]).tolist() == [True, False]
+
+
+def test_memory_that_halved_edges_lack_is_told_with_the_key(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr(ScikitFem, "refinement", refuse)
+    with pytest.raises(StepError, match=r"output.error_bars, with halved edges: memory: found too little of it"):
+        rigidfluid.run(falling())
 
 
 def test_a_velocity_that_is_given_has_no_error_and_its_force_has_one() -> None:

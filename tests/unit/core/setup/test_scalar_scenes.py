@@ -74,6 +74,14 @@ def test_fields_and_probes_have_the_scalar(tmp_path: Path) -> None:
     assert fields.scalar.max() == pytest.approx(load_results(tmp_path).scalar["greatest"][-1], rel=1e-6)
 
 
+def test_probes_have_no_scalar_of_a_backend_that_does_not_tell_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ScikitFem, "probe_scalar", FluidBackend.probe_scalar)
+    short = {"time": {"end": 0.01, "step": 0.01}, "output": {"every": 0.01, "probes": [[0.2, 1.4]]}}
+    found = rigidfluid.run(scene(**short)).probes
+    assert np.isnan(found["scalar"]).all()
+    assert np.isfinite(found["pressure"]).all()
+
+
 def test_a_run_is_resumed_to_the_last_bit(tmp_path: Path) -> None:
     rigidfluid.run(scene(), tmp_path / "whole")
     rigidfluid.run(scene(time={"end": 0.06, "step": 0.01}), tmp_path / "parts")

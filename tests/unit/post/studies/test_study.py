@@ -469,9 +469,16 @@ def test_figures_that_a_run_lacks(key: str, text: str, history: History) -> None
         read_figure(FigureTable(key=key), history)
 
 
+def test_the_error_of_the_mesh_is_a_figure_where_it_is_estimated() -> None:
+    figure, shipped = FigureTable(key="mesh_error.largest"), SCENES / "falling_disk.toml"
+    check_figure(figure, rigidfluid.load_scene(shipped, ["mesh.estimate=true"]))
+    with pytest.raises(SceneError, match=r"error\.figure: found 'mesh_error'"):
+        check_figure(figure, rigidfluid.load_scene(shipped))
+
+
 def test_figures_are_keys_of_the_summary() -> None:
     summary = rigidfluid.run(rigidfluid.load_scene(SCENES / "dry_bounce.toml", ["time.end=2e-5"])).summary
-    of_few_scenes = {"cycles", "error_estimates"}
+    of_few_scenes = {"cycles", "mesh_error", "error_estimates"}
     assert set(FIGURES) - of_few_scenes == {key for key, value in summary.items() if not isinstance(value, str)} - {
         "scene", "seed", "versions", "files", "auto_epsilon", "peak_memory", "latest_failed_remesh", "remarks"
     }  # fmt: skip
