@@ -134,9 +134,8 @@ def page(work: Work) -> Page:
         "steps",
         "cost of a key over the run's",
     )
-    sunk = greatest.pop("sunk")
-    elsewhere = max(greatest.values())
-    text = ABOUT.format(table=table(head, rows), greatest=sunk, elsewhere=elsewhere, share=SHARE)
+    free, touching = (max(greatest[name] for name in names) for names in (("fall", "driven"), ("sunk", "bounce")))
+    text = ABOUT.format(table=table(head, rows), free=free, touching=touching, share=SHARE)
     return Page("Derivatives by values of a scene", text, {"": plot(found[0])})
 
 
@@ -172,8 +171,8 @@ viscosity ("none").
 
 {table}
 
-The greatest error is {greatest:.1e}, where the disk sinks onto the floor: near contacts in a fluid path and flow agree
-to a thousandth of a step, and no run is smoother than that in its values. Elsewhere it is {elsewhere:.1e}. The cost
+The greatest error is {free:.1e} without contacts, and {touching:.1e} in contacts: there path and flow agree to a
+thousandth of a step, and no run is smoother than that in its values. The cost
 is the CPU time that each key adds, over that of the same run without derivatives; a difference of two runs costs 2, and
 near contacts a key does too. How derivatives are found, and where they end, is in
 [decision 111](../decisions/111-sensitivities.md)."""
