@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Container, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from rigidfluid.core.case.scene_model import scene_body
@@ -35,21 +35,28 @@ class Present:
 
 @dataclass(frozen=True)
 class Population:
-    """Changes of the bodies of a run: tables of those that ``entered``, and names of those that ``left``."""
+    """Changes of the bodies of a run: tables of those that ``entered``, and names of those that ``left``; ``places``:
+    keys of place and velocity of those that were there at the latest change, by name."""
 
     entered: tuple[Mapping[str, Any], ...] = ()
     left: tuple[str, ...] = ()
+    places: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
     @classmethod
     def from_dict(cls, stored: Mapping[str, Any]) -> Population:
-        """Population as `to_dict` gave it."""
-        return cls(tuple(stored["entered"]), tuple(stored["gone"]))
+        """Population as `to_dict` gave it, or its `changes` alone."""
+        return cls(tuple(stored["entered"]), tuple(stored["gone"]), stored.get("places", {}))
 
     def __bool__(self) -> bool:
         return bool(self.entered or self.left)
 
     def to_dict(self) -> dict[str, Any]:
-        """Values that JSON can hold, for checkpoints and summaries."""
+        """Values that JSON can hold, for checkpoints."""
+        return self.changes | {"places": dict(self.places)}
+
+    @property
+    def changes(self) -> dict[str, Any]:
+        """Which have entered, and which are gone, as values that JSON can hold."""
         return {"entered": list(self.entered), "gone": list(self.left)}
 
     def with_body(self, table: Mapping[str, Any]) -> Population:
@@ -73,14 +80,15 @@ class Population:
         bodies = (*origin.bodies, *self._entered(origin))
         return origin.with_bodies(tuple(body for body in bodies if body.name in names))
 
-    def model(self, origin: Model, now: Present) -> Model:
-        """The model at present: bodies of ``origin`` and those that entered, without those that left, in their places
-        ``now``; raises SceneError or PluginError for a table that is wrong."""
+    def placed(self, now: Present) -> Population:
+        """One whose latest change is ``now``."""
+        return replace(self, places={name: _place(now, row) for row, name in enumerate(now.names)})
+
+    def model(self, origin: Model) -> Model:
+        """The model at the latest change: bodies of ``origin`` and those that entered, without those that left, in
+        their places then; raises SceneError or PluginError for a table that is wrong."""
         bodies = [body for body in (*origin.bodies, *self._entered(origin)) if body.name not in self.left]
-        places = {name: row for row, name in enumerate(now.names)}
-        return origin.with_bodies(
-            tuple(_moved(body, now, places[body.name]) if body.name in places else body for body in bodies)
-        )
+        return origin.with_bodies(tuple(_moved(body, self.places.get(body.name, {})) for body in bodies))
 
     def _entered(self, origin: Model) -> Iterator[RigidBody]:
         return (_body(table, f"body {table.get('name')!r}", origin) for table in self.entered)
@@ -153,18 +161,23 @@ def _body(table: Mapping[str, Any], at: str, model: Model) -> RigidBody:
     return scene_body(read_table(BodyTable, table, at), at, model.registry, model.dimension)
 
 
-def _moved(body: RigidBody, now: Present, row: int) -> RigidBody:
-    """The body where it is now, if it is free with its velocities."""
+def _place(now: Present, row: int) -> dict[str, Any]:
+    """Keys of a body's place and velocity."""
     pose, twist = now.pose, now.twist
-    place: dict[str, Any] = {"position": _numbers(pose.position[row])}
-    if body.shape.dimension == 2:
-        place["angle"] = float(pose.orientation[row, 0])
-    else:
-        place["orientation"] = _numbers(pose.orientation[row])
-    if not body.is_prescribed:
-        place["velocity"] = _numbers(twist.velocity[row])
-        place["angular_velocity"] = _numbers(twist.angular_velocity[row])
-    return replace(body, **place)
+    turned = _numbers(pose.orientation[row])
+    return {
+        "position": _numbers(pose.position[row]),
+        **({"angle": turned[0]} if len(turned) == 1 else {"orientation": turned}),
+        "velocity": _numbers(twist.velocity[row]),
+        "angular_velocity": _numbers(twist.angular_velocity[row]),
+    }
+
+
+def _moved(body: RigidBody, place: Mapping[str, Any]) -> RigidBody:
+    """The body at its ``place``, if it is free with its velocities."""
+    unread = ("velocity", "angular_velocity") if body.is_prescribed else ()
+    keys = {key: tuple(value) if isinstance(value, list) else value for key, value in place.items()}
+    return replace(body, **{key: value for key, value in keys.items() if key not in unread})
 
 
 def _numbers(row: FloatArray) -> tuple[float, ...]:

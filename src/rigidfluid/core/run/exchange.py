@@ -92,9 +92,10 @@ class Exchange:
 
 @dataclass(frozen=True)
 class Successor:
-    """Bodies that a run goes on with: their ``model``, the ``exchange`` that leads to their system, and the
-    ``prescription`` of their motions."""
+    """Bodies that a run goes on with: their ``population`` and ``model``, the ``exchange`` that leads to their system,
+    and the ``prescription`` of their motions."""
 
+    population: Population
     model: Model
     exchange: Exchange
     prescription: Prescription
@@ -104,14 +105,15 @@ def successor(origin: Model, model: Model, system: System, state: State, populat
     """The bodies of a ``population`` of the model ``origin`` after those of a ``model`` and ``system`` in a ``state``;
     raises SceneError where they cannot be, or overlap."""
     require_changeable(model)
-    now = population.model(origin, Present(_names(system), state.pose, state.twist))
+    population = population.placed(Present(_names(system), state.pose, state.twist))
+    now = population.model(origin)
     require_changeable(now)
     after = assemble_present(now)
     exchange = Exchange.between(system, after)
     given = prescribed_motion(now.bodies, after.pose).rows
     prescription = exchange.prescription(present_motion(model, system, state).rows, given)
     after = following(after, PrescribedMotion(prescription))
-    return Successor(now, replace(exchange, after=after), prescription)
+    return Successor(population, now, replace(exchange, after=after), prescription)
 
 
 def exchanged(successor: Successor, state: State, updater: Updater, clock: Clock) -> State:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.case.population import Population, Present, assemble_present
+from rigidfluid.core.case.population import Population, assemble_present
 from rigidfluid.core.mesh.distribution import joined, partition, parts_of, shared
 from rigidfluid.core.model.fluid_backend import FluidBackend
 from rigidfluid.core.model.state import State
@@ -66,8 +66,7 @@ def earlier_of(model: Model, out: Path | None, system: System, clock: Clock, fil
     path = out / checkpoint_name(backend.ranks.rank)
     population = Population.from_dict(json.loads(checkpoint.population))
     if population:
-        state = checkpoint.state
-        model = population.model(model, Present(population.names(model), state.pose, state.twist))
+        model = population.model(model)
         system = assemble_present(model)
     with backend.ranks.raise_on_all():
         require_fit(path, checkpoint, system, clock)

@@ -411,7 +411,7 @@ class Simulation(Described):
         before = self.model, self.system, self.population
         with told_memory(), self._threads(), self.watch("mesh"), subjects_by_name(population.names(self._origin)):
             next_one = successor(self._origin, self.model, self.system, self.state, population)
-            self._follow(next_one.model, next_one.exchange.after, population)
+            self._follow(next_one.model, next_one.exchange.after, next_one.population)
             try:
                 self.state = exchanged(next_one, self.state, self.mesh_updater, self.clock)
             except BaseException:

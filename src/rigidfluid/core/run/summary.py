@@ -91,7 +91,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         "rest_position": {system.surfaces[i]: position for i, position in enumerate(state.pose.position.tolist())},
         **found,
         **_caller_values(state, system),
-        **({"population": simulation.population.to_dict()} if simulation.population else {}),
+        **({"population": simulation.population.changes} if simulation.population else {}),
         **_mesh_errors(simulation.history),
         "remesh_jumps": jumps,
         **_error_figures(simulation),

@@ -16,6 +16,8 @@ FIRST = {"name": "first", "type": "sphere", "radius": 0.1, "density": 2.0, "posi
 SECOND = FIRST | {"name": "second", "position": [0.7, 0.6], "velocity": [0.0, 0.1]}
 THIRD = FIRST | {"name": "third", "position": [0.5, 0.25], "velocity": [0.2, 0.0], "angular_velocity": 3.0}
 CONTACT = {"law": "spring-dashpot", "range": 0.05, "stiffness": 2e3, "restitution": 0.8, "friction": 0.3}
+AUTO = {"law": "normal", "range": 0.05, "epsilon": "auto"}
+FALLING = THIRD | {"position": [0.5, 0.14], "velocity": [0.0, -0.3]}
 
 
 def dry(*bodies: dict[str, Any], **tables: Any) -> Simulation:
@@ -105,16 +107,22 @@ def test_the_account_closes_in_a_fluid() -> None:
     assert run.history.bodies["body"].tolist()[-2:] == ["first", "third"]
 
 
-def test_a_resumed_run_has_the_bodies_of_the_earlier_one(tmp_path: Path) -> None:
-    run, whole = wet(tmp_path, output={"every": 0.1}), wet(output={"every": 0.1})
+@pytest.mark.parametrize(
+    ("contact", "third"), [(CONTACT, THIRD), (AUTO, FALLING)], ids=["free", "strength by the loads at an exchange"]
+)
+def test_a_resumed_run_has_the_bodies_of_the_earlier_one(
+    tmp_path: Path, contact: dict[str, Any], third: dict[str, Any]
+) -> None:
+    tables = {"output": {"every": 0.1}, "contact": contact}
+    run, whole = wet(tmp_path, **tables), wet(**tables)
     for one in (run, whole):
         one.go(0.04)
-        one.add(THIRD)
+        one.add(third)
         one.go(0.08)
         one.remove("first")
     run.go(0.1)
     run.close()
-    resumed = wet(tmp_path, resume=True, output={"every": 0.1})
+    resumed = wet(tmp_path, resume=True, **tables)
     assert list(resumed.bodies) == ["second", "third"]
     for one in (resumed, whole):
         one.go()
