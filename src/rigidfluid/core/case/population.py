@@ -176,8 +176,12 @@ def _place(now: Present, row: int) -> dict[str, Any]:
 def _moved(body: RigidBody, place: Mapping[str, Any]) -> RigidBody:
     """The body at its ``place``, if it is free with its velocities."""
     unread = ("velocity", "angular_velocity") if body.is_prescribed else ()
-    keys = {key: tuple(value) if isinstance(value, list) else value for key, value in place.items()}
-    return replace(body, **{key: value for key, value in keys.items() if key not in unread})
+    keys: dict[str, Any] = {key: _unchanging(value) for key, value in place.items() if key not in unread}
+    return replace(body, **keys)
+
+
+def _unchanging(value: Any) -> Any:
+    return tuple(value) if isinstance(value, list) else value
 
 
 def _numbers(row: FloatArray) -> tuple[float, ...]:
