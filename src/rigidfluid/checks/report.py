@@ -43,6 +43,7 @@ from rigidfluid.core.model.foreign import no_exit
 from rigidfluid.core.model.memory import told_memory
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Contacts
+from rigidfluid.core.run.neighbour_systems import system_pairs
 from rigidfluid.core.setup.assemble import assemble, gap_reach
 from rigidfluid.core.setup.features import Feature, features
 from rigidfluid.core.setup.geometry_checks import initial_contacts
@@ -105,6 +106,8 @@ def check(case: Case) -> Report:
         whole = assemble_ever(judged) if model.source_tables else system
         start = initial_contacts(model, system.pose, gap_reach(system))
         spot_check(system, system.pose, None, 0)
+        if model.output.sensitivities:
+            system_pairs(model.document, system, model.output.sensitivities)
         answers = chain(findings(judged, whole), _findings_at_start(model, system, start))
         found = sorted(answers, key=lambda finding: GRADES.index(finding.grade))
         rows = (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from typing import Any, NamedTuple
 
@@ -36,6 +36,18 @@ class SystemPair(NamedTuple):
     half: float
     plus: System
     minus: System
+
+
+def system_pairs(document: Mapping[str, Any], system: System, keys: Sequence[str]) -> list[SystemPair]:
+    """Systems of the scene in a ``document``, whose own is ``system``, on both sides of the values of all keys.
+
+    Raises SceneError where one has no derivative, or none has, as the fluid's solution holds motions by forces that are
+    unknowns of their own.
+    """
+    if len(system.solved_joints.links(system.motions.pose, 0.0).rate):
+        found = "joints, held directions or dampers in a fluid"
+        raise SceneError(_FIELD, found, "bodies without them", "Run with two values.")
+    return [system_pair(document, system, key) for key in keys]
 
 
 def system_pair(document: Mapping[str, Any], system: System, key: str) -> SystemPair:

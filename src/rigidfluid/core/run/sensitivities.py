@@ -16,12 +16,12 @@ from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.output.records import Row
 from rigidfluid.core.run.initial_state import initial_state
-from rigidfluid.core.run.neighbour_systems import SystemPair, system_pair
+from rigidfluid.core.run.neighbour_systems import SystemPair, system_pairs
 from rigidfluid.core.run.neighbours import Neighbour, Pair, followed
 from rigidfluid.core.run.step import Tools
 from rigidfluid.core.run.stepper import Stepper
 from rigidfluid.core.run.sudden_start import faces_start_at_once
-from rigidfluid.errors import SceneError, StepRejected
+from rigidfluid.errors import StepRejected
 
 _PARTS = {
     "twist": ("velocity", "angular_velocity"),
@@ -49,9 +49,8 @@ class Sensitivities:
     """
 
     def __init__(self, document: Mapping[str, Any], tools: Tools, state: State, keys: Sequence[str]) -> None:
-        _refuse_links(tools.system)
         self._tools, self._latest = tools, state
-        self._systems = [system_pair(document, tools.system, key) for key in keys]
+        self._systems = system_pairs(document, tools.system, keys)
         self._pairs = [self._begun(pair) for pair in self._systems]
         self.ended: str | None = None
 
@@ -102,13 +101,6 @@ class Sensitivities:
         shared = replace(system, make_backend=tools.system.make_backend)
         stepper = Stepper(system, tools.clock, tools.mesh_updater, tools.watch)
         return Neighbour(replace(tools, system=shared, scheme=scheme_of(shared)), stepper, state)
-
-
-def _refuse_links(system: System) -> None:
-    """Raise SceneError where the fluid's solution holds motions, by forces that are unknowns of their own."""
-    if len(system.solved_joints.links(system.motions.pose, 0.0).rate):
-        found = "joints, held directions or dampers in a fluid"
-        raise SceneError("output.sensitivities", found, "bodies without them", "Run with two values.")
 
 
 def _is_same(state: State, other: State) -> bool:

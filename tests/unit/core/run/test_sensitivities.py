@@ -11,6 +11,7 @@ import pytest
 from scenes import dry_tables, wet_tables
 
 from rigidfluid.api import SceneError, Simulation, load_results, run, scene_from_dict
+from rigidfluid.checks.report import check
 from rigidfluid.core.scene.overrides import assign
 from rigidfluid.taylor_hood.sparse_backend import SparseBackend
 from rigidfluid.taylor_hood.stepping import response
@@ -227,6 +228,8 @@ def test_a_resumed_run_has_those_until_its_checkpoint(tmp_path: Path) -> None:
 def test_keys_without_a_derivative_are_refused(key: str, words: str) -> None:
     with pytest.raises(SceneError, match=words):
         started(wet(DISK), key)
+    with pytest.raises(SceneError, match=words):
+        check(scene_from_dict(wet(DISK, output={"every": 1.0, "sensitivities": [key]})))
 
 
 def test_backends_without_derivatives_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
