@@ -64,8 +64,15 @@ def test_a_part_has_its_own_contact_with_a_wall():
     ],
 )
 def test_every_detector_leaves_them_out_of_the_forces(detector):
+    assert_parts_do_not_repel(chain("snake", "snake", None, mesh=True, detector=detector))
+
+
+def test_they_are_left_out_without_a_fluid_too():
+    assert_parts_do_not_repel(chain("snake", "snake", None))
+
+
+def assert_parts_do_not_repel(scene):
     """Two parts side by side stay at rest; the third, no part of it, is pushed off the second and pushes it back."""
-    scene = chain("snake", "snake", None, mesh=True, detector=detector)
     forces = rigidfluid.run(scene).bodies["cfx"].reshape(-1, 3)[1:]
     np.testing.assert_array_equal(forces[:, 0], 0.0)
     assert np.all(forces[:, 1] < 0)

@@ -145,7 +145,12 @@ BAD = {
         "Equations",
     ),
     "wrong length": ({"fluid.gravity": [0.0, 0.0, -981.0]}, "fluid.gravity", "2 numbers", "2 dimensions"),
-    "no body": ({"body": []}, "body: found nothing", "a body or a mechanism", "[[mechanism]]"),
+    "neither body nor fluid": (
+        {"body": [], "fluid.backend": "dry", **dict.fromkeys(("fluid.density", "fluid.viscosity"), DELETE)},
+        "body: found nothing",
+        "a body or a mechanism",
+        "[[mechanism]]",
+    ),
     "empty box": ({"domain.upper": [2.0, 0.0]}, "domain.upper: found [2.0, 0.0]", "above domain.lower", "Swap"),
     "probe outside": ({"output.probes": [[3.0, 0.0]]}, "output.probes.0: found [3.0, 0.0]", "domain", "Move"),
     "3D face": (

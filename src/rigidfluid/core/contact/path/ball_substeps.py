@@ -56,7 +56,7 @@ def ball_substeps(system: System, law: ForceLaw, dynamics: BodyDynamics) -> Ball
     detection, formula = system.detection, own_formula(law)
     if formula is None or not isinstance(detection, PoseDetection) or not isinstance(dynamics, DryDynamics):
         return None
-    if len(system.joined) or system.wall_velocity is not None or not dynamics.is_of_free_balls:
+    if system.wall_velocity is not None or not dynamics.is_of_free_balls:
         return None
     near = detection.near_balls
     return None if near is None else BallSubsteps(system, formula, near, dynamics)

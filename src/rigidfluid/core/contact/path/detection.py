@@ -34,8 +34,11 @@ class PoseDetection(Detection):
 
     @cached_property
     def near_balls(self) -> NearPairs | None:
-        """Neighbour list of the bodies, if all are balls between flat walls, in closed form; else None."""
+        """Neighbour list of the bodies, if all are balls that repel each other, between flat walls, in closed form;
+        else None."""
         bodies, walls = self._system.bodies, self._system.walls
+        if len(self._system.joined) or len(np.unique(self._system.assembly)) < len(bodies):
+            return None
         balls = [body.radius for body in bodies if body.radius is not None]
         closed_form = vars(type(self._system.detector)).get("closed_form", False)
         if not closed_form or len(balls) < len(bodies) or not all(wall.shape.plane for wall in walls):

@@ -112,7 +112,7 @@ def modal_substeps(system: System, law: ForceLaw, dynamics: BodyDynamics) -> Mod
         return None
     if not isinstance(dynamics, ModalDynamics) or dynamics.turns or system.prescribed.any():
         return None
-    if len(system.joined) or system.wall_velocity is not None:
+    if system.wall_velocity is not None:
         return None
     near = detection.near_balls
     return None if near is None else ModalSubsteps(system, formula, near, dynamics)
