@@ -21,11 +21,11 @@ EQUAL = "Equal spheres"
 ARRANGEMENTS = {
     "A sphere at a wall": NearSpheres(np.inf),
     EQUAL: NearSpheres(1.0),
-    "Radii 1 and 4": NearSpheres(4.0, size_body=0.5),
+    "Radii 1 and 4": NearSpheres(
+        4.0, 0.5, ("mesh.refine=[{lower=[-1.3, -1.3, -0.3], upper=[1.3, 1.3, 2.6], size=0.25}]",)
+    ),
 }
-FINER = NearSpheres(4.0, 0.5, ("mesh.refine=[{lower=[-1.3, -1.3, -0.3], upper=[1.3, 1.3, 2.6], size=0.25}]",))
-WIDEST = GAPS[:2]
-"""Radii 1 and 4 with a box of finer cells around the smaller, and the gaps at which they are measured."""
+"""Edges are at most a quarter of the radius on each sphere; the box is around the smaller one."""
 STYLES = {"force": ("o", "-"), "torque": ("s", "--"), "torque on the larger": ("^", ":")}
 """Markers and lines, by load."""
 
@@ -35,9 +35,8 @@ def page(work: Work) -> Page:
     rows = sorted(work.cases(_cases()), key=lambda row: (-float(row["gap"]), float(row["far"])))
     for scene in ("squeezed_film", "two_spheres"):
         work.watch(scene, Settings(f"scenes/{scene}.toml"))
-    near = [row for row in rows if row["motion"] != TURNING and row["arrangement"] in ARRANGEMENTS]
+    near = [row for row in rows if row["motion"] != TURNING]
     turned = [row for row in rows if row["motion"] == TURNING]
-    finer = [row for row in rows if row["arrangement"] == "finer"]
     beyond = [row for row in near if abs(_off(row)) > ALLOWED]
     text = ABOUT.format(
         tables="\n\n".join(f"**{name}**\n\n{_table(name, near)}" for name in ARRANGEMENTS),
@@ -48,8 +47,6 @@ def page(work: Work) -> Page:
         beyond="; ".join(f"{row['motion']} at {row['gap']:g}, {_off(row):+.2%} ({_name(row)})" for row in beyond)
         or "none",
         worst=_worst(near),
-        finer=_table("finer", finer),
-        finest=f"{max(abs(_off(row)) for row in finer):.2%}",
         turned_at=TURNED_AT,
         boxes=_boxes(turned),
         halved=_halved(turned),
@@ -85,8 +82,7 @@ def _cases() -> dict[str, Callable[[], Iterable[Row]]]:
         f"{EQUAL} {TURNING} {far:g}": partial(_rows, EQUAL, ARRANGEMENTS[EQUAL], TURNED_AT, far, [TURNING])
         for far in BOXES
     }
-    finer = {f"finer {gap:g} {FAR:g}": partial(_rows, "finer", FINER, gap, FAR, list(MOTIONS)) for gap in WIDEST}
-    return near | turned | finer
+    return near | turned
 
 
 def _rows(heading: str, spheres: NearSpheres, gap: float, far: float, motions: Sequence[str]) -> Iterator[Row]:
@@ -172,7 +168,8 @@ def _halved(rows: Sequence[Row]) -> str:
 
 ABOUT = """Spheres that move slowly in Stokes flow: one of radius 1 at a wall (`scenes/squeezed_film.toml`), and pairs
 of radii 1 and 1, and 1 and 4 (`scenes/two_spheres.toml`). Each load is that of one step, in a box whose walls are {far}
-radii away. `size_body` is .25, with radii 1 and 4 .5, and `size` a fifth of the distance to the walls. Everything else
+radii away. Edges on spheres are at most a quarter of the radius: `size_body` is .25, with radii 1 and 4 .5, and there a
+box by `[[mesh.refine]]` asks for .25 around the smaller. `size` is a fifth of the distance to the walls. Everything else
 is the default: two cells across a gap, five `refinements`, finer cells
 [in films](../decisions/92-films-thinner-than-cells.md). No law adds a film.
 
@@ -196,16 +193,11 @@ differences are
 
 The CPU time is that of all motions at a gap, and of their mesh.
 
-Radii 1 and 4 have `size_body` .5, an eighth of the larger radius and half the smaller, while all other spheres have a
-quarter of theirs. The torque on the smaller sphere in sliding is a small part of force times radius, and for that its
-cells are too coarse. With cells of .25 in a box around it, by `[[mesh.refine]]`, edges on either sphere are at most a
-quarter of its radius, and all loads at the widest gaps are within {finest}:
-
-{finer}
-
-`size_body = "auto"` is at most a fifth of the least radius. In narrower gaps cells are finer anyway. In the thinnest
-films squeezing is off most: its pressure varies over √(R gap), R the smaller radius, and edges there are .12 of that,
-but no shorter than `size_body`/256.
+Each sphere needs edges of a quarter of its own radius. With a `size_body` of .5 for both radii, 1 and 4, half the smaller
+radius, the torque on the smaller sphere, which slides and hardly turns, is 1.2 % off at a gap of .5: it is a small part of
+force times radius. `size_body = "auto"` is a fifth of the least radius. In the thinnest films squeezing is off most:
+its pressure varies over √(R gap), R the smaller radius, and edges there are .12 of that, but no shorter than
+`size_body`/256.
 
 ## Opposite turning in place, and the box
 
