@@ -20,7 +20,7 @@ SPIN = 1e4
 def spun(step: float, **time: float) -> History:
     """A disk that spins and crosses the box, until a little after it has hit the floor."""
     tables = floor_hit(step, "substeps", velocity=[0.0, -80.0], angular_velocity=[SPIN]).to_dict()
-    tables |= {"time": {"end": 0.003, "step": step} | time, "output": {"every": 0.003}}
+    tables |= {"time": {"end": 0.006, "step": step} | time, "output": {"every": 0.006}}
     return rigidfluid.run(rigidfluid.scene_from_dict(tables))
 
 
