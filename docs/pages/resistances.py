@@ -169,8 +169,8 @@ def _halved(rows: Sequence[Row]) -> str:
 ABOUT = """Spheres that move slowly in Stokes flow: one of radius 1 at a wall (`scenes/squeezed_film.toml`), and pairs
 of radii 1 and 1, and 1 and 4 (`scenes/two_spheres.toml`). Each load is that of one step, in a box whose walls are {far}
 radii away. Edges on spheres are at most a quarter of the radius: `size_body` is .25, with radii 1 and 4 .5, and there a
-box by `[[mesh.refine]]` asks for .25 around the smaller. `size` is a fifth of the distance to the walls. Everything else
-is the default: two cells across a gap, five `refinements`, finer cells
+box by `[[mesh.refine]]` asks for .25 around the smaller. `size` is a fifth of the distance to the walls. Everything
+else is the default: two cells across a gap, five `refinements`, finer cells
 [in films](../decisions/92-films-thinner-than-cells.md). No law adds a film.
 
 Motions are relative ones of the surfaces: at speed 1 half-way between them, along the normal (squeezing) or across it
@@ -193,11 +193,11 @@ differences are
 
 The CPU time is that of all motions at a gap, and of their mesh.
 
-Each sphere needs edges of a quarter of its own radius. With a `size_body` of .5 for both radii, 1 and 4, half the smaller
-radius, the torque on the smaller sphere, which slides and hardly turns, is 1.2 % off at a gap of .5: it is a small part of
-force times radius. `size_body = "auto"` is a fifth of the least radius. In the thinnest films squeezing is off most:
-its pressure varies over √(R gap), R the smaller radius, and edges there are .12 of that, but no shorter than
-`size_body`/256.
+Each sphere needs edges of a quarter of its own radius. With a `size_body` of .5 for both radii, 1 and 4, half the
+smaller radius, the torque on the smaller sphere, which slides and hardly turns, is 1.2 % off at a gap of .5: it is a
+small part of force times radius. `size_body = "auto"` is a fifth of the least radius. In the thinnest films squeezing
+is off most: its pressure varies over √(R gap), R the smaller radius, and edges there are .12 of that, but no shorter
+than `size_body`/256.
 
 ## Opposite turning in place, and the box
 
