@@ -246,7 +246,7 @@ def between_periodic_surfaces(scene: Scene) -> Scene:
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize("contact", [conservative("centre"), SPRING | {"restitution": 0.7}], ids=["centre", "spring"])
 def test_balls_cross_periodic_surfaces_alike(contact: dict[str, Any], dimension: int) -> None:
-    """Those of a gas around a corner, where some start in other images of the domain."""
+    """A gas is around a corner, where some balls start in other images of the domain."""
     random = np.random.default_rng(7)
     places = np.stack(np.meshgrid(*[[0.9, 1.1]] * dimension, indexing="ij"), axis=-1).reshape(-1, dimension)
     places = places + random.uniform(-0.02, 0.02, places.shape)

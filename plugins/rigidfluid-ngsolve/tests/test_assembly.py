@@ -132,7 +132,7 @@ def test_a_viscosity_that_varies_has_the_stress_of_scikit_fem(dimension: int) ->
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_the_tangent_is_the_derivative_of_the_stress(dimension: int) -> None:
-    """By differences, in curved cells too."""
+    """Compare it with differences, in curved cells too."""
     mesh = ball_in_a_box(dimension, 2)
     numbering, points = Numbering.from_mesh(mesh), mesh.geometry
     made, random = FormAssembly(numbering, convection=True), np.random.default_rng(5)

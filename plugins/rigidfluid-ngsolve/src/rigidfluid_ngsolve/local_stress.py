@@ -34,7 +34,7 @@ class _Points:
 
     @property
     def weight(self) -> FloatArray:
-        """What each point weighs in an integral (N,)."""
+        """Weights of the points in an integral (N,)."""
         self._weight.Assemble()
         return self._rows(self._weight.vec)[self.cells].ravel()
 

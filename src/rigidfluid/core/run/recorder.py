@@ -8,9 +8,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rigidfluid.core.coupling.contact_forces import contact_forces
+from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.types import FluidState
 from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
@@ -28,11 +27,13 @@ if TYPE_CHECKING:
 class Recorder:
     """Records of a run in memory, and in a folder once there is a writer to it.
 
-    ``files`` are the digests of the files that the scene names, ``extremes`` those of gaps and velocities until now.
+    ``files`` are the digests of the files that the scene names, ``extremes`` those of gaps and velocities until now,
+    ``probes`` (m, d) the points at which the flow is recorded.
     """
 
-    def __init__(self, history: History, extremes: Extremes, files: Mapping[str, str]) -> None:
+    def __init__(self, history: History, extremes: Extremes, files: Mapping[str, str], probes: FloatArray) -> None:
         self.history, self.extremes = history, extremes
+        self._probes = probes
         self.companions = Companions()
         self._files = files
         self._times: tuple[float, ...] = ()
@@ -42,11 +43,6 @@ class Recorder:
     def folder(self) -> Path | None:
         """Folder of the results, None of a run in memory."""
         return None if self._writer is None else self._writer.out
-
-    @property
-    def output_files(self) -> list[str]:
-        """Files that are written."""
-        return [] if self._writer is None else self._writer.files
 
     def write_to(self, out: Path, simulation: Simulation, earlier: Checkpoint | None = None) -> None:
         """Write to a folder from now on, after what an ``earlier`` run has left there."""
@@ -60,8 +56,7 @@ class Recorder:
         """Add the rows of the present state."""
         state = simulation.state
         forces = contact_forces(simulation.system, simulation.stepper.scheme, state, simulation.time)
-        probes = np.array(simulation.model.output.probes, dtype=float).reshape(-1, simulation.model.dimension)
-        rows = records(simulation.system, probes, state, simulation.time, _cost(simulation), forces)
+        rows = records(simulation.system, self._probes, state, simulation.time, _cost(simulation), forces)
         self._extend({**rows, **self.companions.step_rows(simulation)}, simulation)
         self.extremes = self.extremes.after(state.gaps, state.twist)
 
@@ -81,7 +76,7 @@ class Recorder:
 
     def finish(self, summary: dict[str, object]) -> None:
         """Keep the summary."""
-        self.history.summary = {**summary, "files": self.output_files}
+        self.history.summary = {**summary, "files": [] if self._writer is None else self._writer.files}
         if self._writer is not None:
             self._writer.summary(self.history.summary)
 

@@ -109,7 +109,8 @@ class Simulation(Described):
         self.mesh_updater = updater_of(model.fluid, system, self.clock, self.watch)
         self.stepper = Stepper(system, self.clock, self.mesh_updater, self.watch, model.time.tolerance)
         history = History(model.dimension, folder=out, coordinates=joint_coordinates(system))
-        self.recorder = Recorder(history, Extremes.none(len(system.bodies)), files)
+        probes = np.array(model.output.probes, dtype=float).reshape(-1, model.dimension)
+        self.recorder = Recorder(history, Extremes.none(len(system.bodies)), files, probes)
         self._timer = RunTimer()
         self._observers = Observers()
         try:

@@ -184,21 +184,28 @@ def _check_probes(model: Model) -> None:
 
 
 def _check_stresslets(model: Model) -> None:
-    backend = model.fluid.backend.part
-    if model.output.stresslets and not backend.stresslets:
-        found = f"true with backend {backend.name!r}"
-        remedy = "Use backend = 'scikit-fem', or leave it out."
-        raise SceneError("output.stresslets", found, "a backend that gives stresslets", remedy)
+    if model.output.stresslets:
+        _require("stresslets", model, "output.stresslets", "true", "a backend that gives stresslets")
 
 
 def _check_estimate(model: Model) -> None:
-    backend = model.fluid.backend.part
-    if model.fluid.estimates_errors and not backend.cell_errors:
+    if model.fluid.estimates_errors:
         mesh = model.fluid.mesh
         field = "mesh.estimate" if mesh is None or mesh.accuracy is None else "mesh.accuracy"
-        found = f"an estimate of errors with backend {backend.name!r}"
+        _require("cell_errors", model, field, "an estimate of errors", "a backend that gives errors of cells")
+
+
+def _check_error_bars(model: Model) -> None:
+    if model.output.error_bars:
+        _require("refinements", model, "output.error_bars", "true", "a backend that compares meshes")
+
+
+def _require(capability: str, model: Model, field: str, found: str, allowed: str) -> None:
+    """Raise SceneError for the ``found`` value of a ``field`` if the backend lacks a ``capability``."""
+    backend = model.fluid.backend.part
+    if not getattr(backend, capability):
         remedy = "Use backend = 'scikit-fem', or leave it out."
-        raise SceneError(field, found, "a backend that gives errors of cells", remedy)
+        raise SceneError(field, f"{found} with backend {backend.name!r}", allowed, remedy)
 
 
 def _check_sensitivities(model: Model) -> None:
@@ -221,14 +228,6 @@ def _without_derivatives(model: Model) -> str | None:
         "a source or a sink": model.source_tables or model.sink_tables,
     }
     return next((name for name, is_there in found.items() if is_there), None)
-
-
-def _check_error_bars(model: Model) -> None:
-    backend = model.fluid.backend.part
-    if model.output.error_bars and not backend.refinements:
-        found = f"true with backend {backend.name!r}"
-        remedy = "Use backend = 'scikit-fem', or leave it out."
-        raise SceneError("output.error_bars", found, "a backend that compares meshes", remedy)
 
 
 def _check_control(body: RigidBody, at: str) -> None:

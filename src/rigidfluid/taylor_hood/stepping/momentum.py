@@ -29,7 +29,7 @@ class Moving(NamedTuple):
 
     @property
     def free(self) -> bool:
-        """Whether one more velocity of all is one that nothing holds."""
+        """Tell whether nothing holds one more velocity of all."""
         step, d = self.step, self.points.shape[1]
         linked = step.links.rows[:, :, :d].sum(axis=1)
         return self.discretisation.problem.keeps_momentum and not step.prescribed.any() and not linked.any()
