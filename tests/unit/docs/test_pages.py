@@ -1,4 +1,4 @@
-"""The pages are complete, their links lead somewhere, and their examples run."""
+"""Examples on the pages run."""
 
 from __future__ import annotations
 
@@ -17,67 +17,21 @@ from typing import Any
 
 import numpy as np
 import pytest
-from falling import SCENES
 from linked_runs import body, linked_scene
+from page_sections import blocks, section, text
+from paths import ROOT, SCENES
 from typer.testing import CliRunner
 
 import rigidfluid
 from rigidfluid.api import Fluid, OutputError, Simulation, TimeTable, model_of, scene_from_dict
 from rigidfluid.cli import app
-from rigidfluid.core.output.records import columns
 from rigidfluid.post.reports.report import report
-from rigidfluid.registry import DOMAIN, FORCE_LAW, GROUP, KINDS, Registry
+from rigidfluid.registry import DOMAIN, FORCE_LAW, GROUP, Registry
 
 pytestmark = pytest.mark.long
 
-ROOT = SCENES.parent
-PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
 Install = Callable[..., Path]
 COARSE = ["time.end=0.2", "time.step=0.004", "mesh.size_body=0.05", "output.every=0.2"]
-
-
-def text(name: str) -> str:
-    return (ROOT / name).read_text(encoding="utf-8")
-
-
-def section(page: str, title: str) -> str:
-    return page.partition(f"\n## {title}\n")[2].partition("\n## ")[0]
-
-
-def blocks(page: str, language: str) -> list[str]:
-    return re.findall(rf"```{language}\n(.*?)```", page, flags=re.DOTALL)
-
-
-@pytest.mark.parametrize("dimension", [2, 3])
-@pytest.mark.parametrize("table", columns(2))
-def test_every_column_is_explained(table: str, dimension: int) -> None:
-    named = section(text("docs/results.md"), f"{table}.csv")
-    assert [name for name in columns(dimension)[table] if f"`{name}`" not in named] == []
-
-
-def test_every_figure_of_the_summary_is_explained() -> None:
-    scene = rigidfluid.load_scene(SCENES / "dry_bounce.toml", ["time.end=2e-5"])
-    named = section(text("docs/results.md"), "summary.json")
-    assert [key for key in rigidfluid.run(scene).summary if f"`{key}`" not in named] == []
-
-
-def test_every_hook_is_explained() -> None:
-    page = text("docs/plugins.md")
-    for kind in KINDS:
-        for word in (kind.hook, kind.interface.__name__, kind.field):
-            assert f"`{word}`" in page
-
-
-def test_every_built_in_part_is_among_the_features() -> None:
-    page = text("docs/features.md")
-    built_in = [entry.name for entry in Registry.load().entries if entry.origin.startswith("rigidfluid ")]
-    assert [name for name in built_in if f"`{name}`" not in page] == []
-
-
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_links_lead_to_files(page: Path) -> None:
-    links = re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8"))
-    assert [link for link in links if not (page.parent / link).exists()] == []
 
 
 def test_the_example_of_a_plug_in_runs(install: Install) -> None:
@@ -332,7 +286,3 @@ def test_the_example_of_a_closed_loop_holds_the_disk(
     assert height == pytest.approx(4.2, abs=5e-3)
     assert work == pytest.approx(2.607, rel=0.02)
     assert abs(residual) < 1e-3 * work
-
-
-def test_the_picture_is_small() -> None:
-    assert (ROOT / "docs" / "falling_disk.png").stat().st_size < 300 * 1024
