@@ -9,6 +9,7 @@ from rigidfluid.core.contact.laws.film_loss import FilmLoss
 from rigidfluid.core.contact.laws.friction import Friction, Rubbing
 from rigidfluid.core.contact.laws.repulsion import Repulsion
 from rigidfluid.core.contact.laws.restitution import Restitution
+from rigidfluid.core.fluid.material import Newtonian
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.coulomb import TurningFriction
 from rigidfluid.core.model.force_law import Between, ForceLaw, Overlap, Sign
@@ -51,7 +52,7 @@ class TestRestitution(ForceLawContract):
 
     @pytest.fixture(params=["of its own", "by the Stokes number"])
     def law(self, repulsion: ForceLaw, request: pytest.FixtureRequest) -> ForceLaw:
-        film = Film(0.1, np.array([0.7, 0.4]), 0.01, True)
+        film = Film(Newtonian(0.1), np.array([0.7, 0.4]), 0.01, True)
         return Restitution(repulsion, 0.5, None if request.param == "of its own" else FilmLoss(35.0, film, LOADS))
 
 

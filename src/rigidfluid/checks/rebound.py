@@ -14,7 +14,7 @@ from rigidfluid.core.contact.laws.film_loss import REBOUND, braking
 from rigidfluid.core.contact.laws.stokes_number import stokes_number, stokes_number_taken
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.contacts import select
-from rigidfluid.core.model.types import Contacts, Film
+from rigidfluid.core.model.types import Contacts, Film, Loads
 from rigidfluid.core.scene.mesh_tables import MeshTable
 
 QUESTION = "rebound"
@@ -91,21 +91,21 @@ def _finding(design: DesignContacts, film: Film, row: int, rebound: _Rebound) ->
     if share or back <= COMES_BACK:
         return Finding("note", QUESTION, design.names(row), text, found=found)
     enough, remedy = {"restitution_stokes": BALLS}, f"Set {field}.restitution_stokes to {BALLS:g}"
-    thin = _range_that_stops(select(design.contacts, np.array([row])), film, stokes)
+    thin = _range_that_stops(select(design.contacts, np.array([row])), film, design.system.loads, stokes)
     if thin is not None and thin > resolved:
         remedy, enough["range"] = f"{remedy}, or {field}.range to {round_down(thin)}", thin
     return Finding("warning", QUESTION, design.names(row), text, f"{remedy}.", found, enough)
 
 
-def _range_that_stops(contacts: Contacts, film: Film, stokes: float) -> float | None:
+def _range_that_stops(contacts: Contacts, film: Film, loads: Loads, stokes: float) -> float | None:
     """Widest range before which the film takes so much that COMES_BACK of the speed is left; None if there is none
     [length]."""
     wanted = (1.0 - COMES_BACK) * stokes
     low, high = np.log(film.radius.max()) - 50.0, float(np.log(film.radius.max()))
-    if stokes_number_taken(contacts, film, float(np.exp(low)))[0] < wanted:
+    if stokes_number_taken(contacts, film, loads, float(np.exp(low)))[0] < wanted:
         return None
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        enough = stokes_number_taken(contacts, film, float(np.exp(middle)))[0] >= wanted
+        enough = stokes_number_taken(contacts, film, loads, float(np.exp(middle)))[0] >= wanted
         low, high = (middle, high) if enough else (low, middle)
     return float(np.exp(low))

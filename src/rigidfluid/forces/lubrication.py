@@ -7,7 +7,9 @@ from typing import ClassVar
 import numpy as np
 from pydantic import Field
 
+from rigidfluid.core.fluid.material import Material, Newtonian
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.mechanics.film_viscosity import film_viscosity
 from rigidfluid.core.mechanics.rigid import cross, moment
 from rigidfluid.core.model.contacts import normal_part
 from rigidfluid.core.model.force_law import ForceLaw
@@ -21,12 +23,18 @@ from rigidfluid.forces.film_resistance import FilmResistance, film_resistance, l
 class LubricationOptions(PartOptions):
     """Keys of a table with law ``lubrication``.
 
-    ``viscosity``: dynamic, of the film, μ [mass·length^(2-d)/time]. ``cutoff``: the gap below which the resistance
+    ``viscosity``: dynamic, of the film, μ [mass·length^(2-d)/time]; if not given, that of the fluid, where it varies at
+    the shear rates of the film. ``cutoff``: the gap below which the resistance
     grows no further [length]. ``sliding``: whether the film resists sliding, rolling and twisting too; if not, it is
     the leading term of squeezing. Meshes mostly resolve sliding where they do not squeezing.
     """
 
-    viscosity: float = Field(gt=0, description="Dynamic viscosity μ of the film [mass·length^(2-d)/time]")
+    viscosity: float | None = Field(
+        default=None,
+        gt=0,
+        description="Dynamic viscosity μ of the film [mass·length^(2-d)/time]; if not given, that of the fluid, where"
+        " it varies at the shear rates of the film",
+    )
     cutoff: float = Field(gt=0, description="Gap below which the resistance grows no further [length]")
     sliding: bool = Field(
         default=False,
@@ -51,7 +59,11 @@ class LubricationLaw(ForceLaw):
     `curved_film` has them. Without ``sliding`` N is its leading term, and S, Q, W and T are zero. The film
     takes energy out and holds nothing at rest, so its own force, energy and stiffness are zero.
 
-    A cutoff that is not below range, and surfaces without a known curvature, raise SceneError.
+    Without ``viscosity`` μ is the fluid's. One that varies is averaged over the film, `film_viscosity`, at the speeds
+    v_n and √(v_t² + (R w_t)²); so one μ stands for all resistances.
+
+    A cutoff that is not below range, no viscosity and no fluid, and surfaces without a known curvature, raise
+    SceneError.
 
     Notes
     -----
@@ -70,6 +82,7 @@ class LubricationLaw(ForceLaw):
     def __init__(self, options: PartOptions, range: float, loads: Loads | None = None) -> None:
         super().__init__(options, range, loads)
         self.require_below_range("cutoff", self.options.cutoff)
+        self._material = _material(self.options.viscosity, loads)
         self.couples = self.curved = self.options.sliding
         self.round_option = "sliding" if self.options.sliding else ""
 
@@ -88,7 +101,8 @@ class LubricationLaw(ForceLaw):
     def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
         """The resistance of the film on ``body_a``, (m, d) [force]."""
         normal, rolling = contacts.normal, -cross(motion.angular_velocity, contacts.normal)
-        return -self.options.viscosity * self._resistance(contacts).force(normal, motion.velocity, rolling)
+        force = self._resistance(contacts).force(normal, motion.velocity, rolling)
+        return -self._viscosity(contacts, motion, rolling)[:, None] * force
 
     def couple(self, contacts: Contacts, motion: Motion) -> FloatArray:
         """The couple of the film on ``body_a``, (m, k) [force·length]."""
@@ -96,7 +110,15 @@ class LubricationLaw(ForceLaw):
         couple = moment(resistance.arm_couple(motion.velocity, rolling), contacts.normal)
         if contacts.normal.shape[1] == 3:
             couple += (resistance.twisting * normal_part(motion.angular_velocity, contacts))[:, None] * contacts.normal
-        return -self.options.viscosity * couple
+        return -self._viscosity(contacts, motion, rolling)[:, None] * couple
+
+    def _viscosity(self, contacts: Contacts, motion: Motion, rolling: FloatArray) -> FloatArray:
+        """Viscosity of the films that move so, (m,) [mass·length^(2-d)/time]; ``rolling`` is n × w."""
+        closing = normal_part(motion.velocity, contacts)
+        along = motion.velocity - closing[:, None] * contacts.normal
+        film, radius = np.clip(contacts.gap, self.options.cutoff, self.range), _effective_radius(contacts)
+        passing = np.hypot(np.linalg.norm(along, axis=1), radius * np.linalg.norm(rolling, axis=1))
+        return film_viscosity(self._material, film, radius, np.abs(closing), passing, contacts.normal.shape[1])
 
     def _resistance(self, contacts: Contacts) -> FilmResistance:
         """Resistances that the mesh does not resolve."""
@@ -114,6 +136,16 @@ class LubricationLaw(ForceLaw):
         squeezing = leading_squeezing(film, radius, dimension) - leading_squeezing(end, radius, dimension)
         none = np.zeros_like(squeezing)
         return FilmResistance(squeezing, none, none, none, none)
+
+
+def _material(viscosity: float | None, loads: Loads | None) -> Material:
+    """Material of the film: that of a given ``viscosity``, or else the fluid's."""
+    if viscosity is not None:
+        return Newtonian(viscosity)
+    if loads is None or loads.film is None:
+        allowed = "a viscosity of the film where there is no fluid to take it from"
+        raise SceneError("contact.viscosity", "none", allowed, "Give it, or choose a backend with a fluid.")
+    return loads.film.material
 
 
 def _effective_radius(contacts: Contacts) -> FloatArray:

@@ -1,14 +1,18 @@
+from dataclasses import replace
+
 import bispherical
 import numpy as np
 import pytest
 from approach import approach
 from published import brenner, drag_of_approach
-from touching import NORMAL, contact
+from touching import NORMAL, contact, unstacked
 
-from rigidfluid.core.model.types import Motion
+from rigidfluid.core.fluid.material import Material, Newtonian
+from rigidfluid.core.model.types import Film, Motion
 from rigidfluid.errors import SceneError
 from rigidfluid.forces.film_resistance import film_resistance
 from rigidfluid.forces.lubrication import LubricationLaw, LubricationOptions
+from rigidfluid.materials.carreau import Carreau, CarreauOptions
 
 VISCOSITY, RADIUS = 0.7, 2.0
 CENTRES = {"wall": np.inf, "equal": 1.0, "smaller": 0.5, "far smaller": 0.1, "larger": 3.0}
@@ -192,3 +196,37 @@ def test_a_gap_of_unknown_curvature_is_refused() -> None:
     for sliding in (True, False):
         with pytest.raises(SceneError, match="surfaces 0 and 2, whose gap has no known curvature"):
             resistance(law(0.1, sliding=sliding), 0.02, np.nan, np.inf, 2)
+
+
+def fluid_law(material: Material, cutoff: float = 1e-9) -> LubricationLaw:
+    loads = replace(unstacked(np.ones(1), np.zeros(1), np.ones(1), 0.1), film=Film(material, np.ones(1), np.inf, True))
+    return LubricationLaw(LubricationOptions(cutoff=cutoff, sliding=True), 0.2, loads)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_film_of_the_fluid_has_its_viscosity(dimension: int) -> None:
+    given = resistance(law(0.2), 0.01, RADIUS, np.inf, dimension)
+    assert resistance(fluid_law(Newtonian(VISCOSITY)), 0.01, RADIUS, np.inf, dimension) == pytest.approx(given)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_film_of_a_fluid_that_thins_resists_the_less_the_faster_it_moves(dimension: int) -> None:
+    options = CarreauOptions(viscosity=VISCOSITY, relaxation_time=1.0, exponent=0.5)
+    thinning, touching = fluid_law(Carreau(options, dimension)), contact(0.01, RADIUS, np.inf, dimension)
+    tangent = np.roll(touching.normal, 1, axis=1)
+    turns = np.zeros((1, 1 if dimension == 2 else 3))
+    turns[0, 0] = 1.0
+    for velocity, turning in ((touching.normal, 0.0 * turns), (tangent, 0.0 * turns), (0.0 * tangent, turns)):
+        shares = []
+        for speed in (1e-6, 1.0, 100.0):
+            motion = Motion(speed * velocity, np.ones(1), speed * turning)
+            pairs = [(one.damping(touching, motion), one.couple(touching, motion)) for one in (thinning, law(0.2))]
+            mine, given = (np.sum(f * motion.velocity) + np.sum(c * motion.angular_velocity) for f, c in pairs)
+            shares.append(mine / given)
+        assert shares[0] == pytest.approx(1.0, rel=1e-3)
+        assert shares[0] > 1.2 * shares[1] > 1.2 * shares[2] > 0.0
+
+
+def test_a_film_without_a_fluid_needs_a_viscosity() -> None:
+    with pytest.raises(SceneError, match=r"contact\.viscosity: found none; allowed is a viscosity of the film"):
+        LubricationLaw(LubricationOptions(cutoff=0.01), 0.2)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rigidfluid.core.fluid.material import Material
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.model.kinematics import EACH_ITS_OWN, Kinematics
 from rigidfluid.core.model.ranks import ALONE, Ranks
@@ -125,11 +126,11 @@ class Motion:
 
 @dataclass(frozen=True, slots=True)
 class Film:
-    """The fluid between bodies near contact: ``viscosity``, dynamic [mass·length^(2-d)/time], and whether the fluid has
-    ``inertia``; ``radius`` (n,) of the balls of equal volume [length]; ``finest_cell`` of the mesh, which resolves the
-    film, infinite where it resolves none [length]."""
+    """The fluid between bodies near contact: its ``material``, and whether it has ``inertia``; ``radius`` (n,) of the
+    balls of equal volume [length]; ``finest_cell`` of the mesh, which resolves the film, infinite where it resolves
+    none [length]."""
 
-    viscosity: float
+    material: Material
     radius: FloatArray
     finest_cell: float
     inertia: bool

@@ -111,9 +111,7 @@ class Fluid:
     def film(self, bodies: Sequence[Body]) -> Film:
         """Films in gaps, as far as the mesh resolves them."""
         radius = np.array([equal_volume_radius(body) for body in bodies])
-        return Film(
-            self.material.dynamic_viscosity, radius, self.mesh.size_body / 2**self.mesh.refinements, self.inertia
-        )
+        return Film(self.material, radius, self.mesh.size_body / 2**self.mesh.refinements, self.inertia)
 
     def problem(self, conditions: tuple[BoundaryCondition, ...], motions: Motions, domain: Domain) -> FluidProblem:
         """Equations with conditions on the boundary of a ``domain``, around bodies that ``motions`` carry."""

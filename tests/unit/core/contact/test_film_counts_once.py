@@ -17,6 +17,7 @@ from rigidfluid.core.contact.laws.loads import inverse_mass
 from rigidfluid.core.contact.laws.restitution import Restitution
 from rigidfluid.core.contact.laws.rough_film import RoughFilm
 from rigidfluid.core.contact.laws.stokes_number import FILM_EDGE, stokes_number, stokes_number_taken
+from rigidfluid.core.fluid.material import Newtonian
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.types import Film, Loads, Motion
 from rigidfluid.forces.normal import NormalLaw
@@ -26,7 +27,7 @@ pytestmark = pytest.mark.long
 DRY, DECAY, RADIUS, VISCOSITY = 0.97, 35.0, 0.1, 0.1
 EDGE = FILM_EDGE * RADIUS
 LOADS = unstacked(np.array([2.0]), np.zeros(1), np.zeros(1), 1e-3)
-FILM = Film(VISCOSITY, np.array([RADIUS]), 0.0, True)
+FILM = Film(Newtonian(VISCOSITY), np.array([RADIUS]), 0.0, True)
 
 
 def cylinder_resistance(gap: float) -> float:
@@ -181,13 +182,13 @@ def test_the_cylinders_film_takes_what_its_exact_resistance_does() -> None:
     lost = np.trapezoid([cylinder_resistance(gap) for gap in gaps], gaps)
     there = contact(EDGE, RADIUS, np.inf)
     exact = lost * float(inverse_mass(there, LOADS)[0] * stokes_number(there, FILM, LOADS)[0])
-    assert stokes_number_taken(there, FILM, gaps[0])[0] == pytest.approx(exact, rel=0.02)
-    assert stokes_number_taken(there, FILM, 2.0 * EDGE)[0] == 0.0
+    assert stokes_number_taken(there, FILM, LOADS, gaps[0])[0] == pytest.approx(exact, rel=0.02)
+    assert stokes_number_taken(there, FILM, LOADS, 2.0 * EDGE)[0] == 0.0
 
 
 def test_a_film_that_cells_do_not_resolve_takes_nothing() -> None:
-    films = [Film(VISCOSITY, np.array([RADIUS]), cell, True) for cell in (0.0, 0.02, 0.1)]
-    taken = [float(stokes_number_taken(contact(0.001, RADIUS, np.inf), film, 0.001)[0]) for film in films]
+    films = [Film(Newtonian(VISCOSITY), np.array([RADIUS]), cell, True) for cell in (0.0, 0.02, 0.1)]
+    taken = [float(stokes_number_taken(contact(0.001, RADIUS, np.inf), film, LOADS, 0.001)[0]) for film in films]
     assert taken[0] > taken[1] > taken[2] == 0.0
 
 

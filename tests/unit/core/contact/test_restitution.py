@@ -19,6 +19,7 @@ from rigidfluid.core.contact.laws.restitution import Restitution
 from rigidfluid.core.contact.laws.rough_film import RoughFilm
 from rigidfluid.core.contact.laws.stokes_number import stokes_number
 from rigidfluid.core.contact.path.substep import _greatest
+from rigidfluid.core.fluid.material import Newtonian
 from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.types import Film, Motion
@@ -29,7 +30,7 @@ from rigidfluid.forces.spring_dashpot import SpringDashpotLaw
 
 RANGE = 0.02
 EPSILON = {"normal": 1e-6, "centre": 1e-6, "contact": 1e-8, "barrier": 1e-4}
-FILM = Film(0.1, np.array([0.1, 0.1]), np.inf, True)
+FILM = Film(Newtonian(0.1), np.array([0.1, 0.1]), np.inf, True)
 LOADS = unstacked(np.array([2.0, 2.0]), np.zeros(2), np.zeros(2), 0.25 * RANGE)
 
 
@@ -171,7 +172,7 @@ def test_without_a_resolved_film_the_law_takes_the_film_down_to_the_roughness(sp
 @pytest.mark.parametrize("cell", [0.0, 0.01, np.inf])
 def test_the_restitution_of_rough_surfaces_grows_with_the_speed_up_to_the_dry_one(cell: float) -> None:
     """So that each state has one speed at range."""
-    rough = RoughFilm(0.01 * RANGE, Film(0.1, np.array([0.1, 0.1]), cell, True), LOADS)
+    rough = RoughFilm(0.01 * RANGE, Film(Newtonian(0.1), np.array([0.1, 0.1]), cell, True), LOADS)
     law = NormalLaw(NormalLaw.Options(epsilon=1e-6), RANGE)
     restitution = rough.restitution(0.9, law, contact(RANGE), np.ones(1))
     found = [float(restitution(np.array([speed]))[0]) for speed in np.geomspace(1e-3, 1e4, 200)]
@@ -188,7 +189,8 @@ def test_slow_impacts_end_with_the_least_restitution() -> None:
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_at_a_wall_the_stokes_number_is_that_of_density_diameter_and_viscosity(dimension: int) -> None:
     volume = np.pi * 0.1**2 if dimension == 2 else 4.0 / 3.0 * np.pi * 0.1**3
-    film, loads = Film(0.02, np.array([0.1]), np.inf, True), unstacked(np.array([3.5 * volume]), *np.zeros((2, 1)), 0.1)
+    film = Film(Newtonian(0.02), np.array([0.1]), np.inf, True)
+    loads = unstacked(np.array([3.5 * volume]), *np.zeros((2, 1)), 0.1)
     found = stokes_number(contact(0.01, 0.1, np.inf, dimension), film, loads)
     np.testing.assert_allclose(found, 3.5 * 0.2 / (9.0 * 0.02))
 

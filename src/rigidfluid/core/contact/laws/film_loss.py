@@ -41,7 +41,7 @@ def braking(law: ForceLaw, contacts: Contacts, mass: FloatArray, film: Film, loa
     range the film acts at v √(1 - 2U/(m v²)), U the law's energy."""
     edges = law.range * np.linspace(1.0, 0.0, _PARTS + 1)
     middles = 0.5 * (edges[1:] + edges[:-1])
-    taken = np.array([stokes_number_taken(contacts, film, gap) for gap in edges[:-1]])
+    taken = np.array([stokes_number_taken(contacts, film, loads, gap) for gap in edges[:-1]])
     stored = np.array([law.energy(replace(contacts, gap=np.full(len(contacts), gap))) for gap in middles[:-1]])
 
     def within(speed: FloatArray) -> FloatArray:

@@ -59,4 +59,4 @@ class RoughFilm:
 
     def taken(self, contacts: Contacts) -> FloatArray:
         """Loss T of the Stokes number in the whole film, down to the roughness, (m,) [1]."""
-        return stokes_number_taken(contacts, replace(self.film, finest_cell=0.0), self.roughness)
+        return stokes_number_taken(contacts, replace(self.film, finest_cell=0.0), self.loads, self.roughness)

@@ -46,7 +46,7 @@ def share_left(contacts: Contacts, loads: Loads, law_range: float, smallest_gap:
     together = np.divide(impact_energy(contacts, loads), alone, out=np.ones(len(contacts)), where=rows)
     with np.errstate(invalid="ignore"):
         stokes = stokes_number(contacts, film, loads) * closing_speed(contacts, loads) * together
-    outside = stokes_number_taken(contacts, film, law_range)
-    taken = outside + WITHIN * (stokes_number_taken(contacts, film, smallest_gap) - outside)
+    outside = stokes_number_taken(contacts, film, loads, law_range)
+    taken = outside + WITHIN * (stokes_number_taken(contacts, film, loads, smallest_gap) - outside)
     left = 1.0 - np.divide(taken, stokes, out=np.zeros(len(contacts)), where=rows)
     return np.maximum(left, SLOWEST) ** 2
