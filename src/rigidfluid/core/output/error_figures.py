@@ -26,23 +26,33 @@ def error_bars(by_mesh: FloatArray, by_steps: FloatArray) -> FloatArray:
 def error_figures(table: Estimates, dimension: int) -> dict[str, dict[str, dict[str, float | None]]]:
     """Errors by ``mesh`` and by ``steps`` in the last row with their ``bar``, and the greatest in any, by body and
     quantity; None where nothing is known."""
-    found: dict[str, dict[str, dict[str, float | None]]] = {}
-    for body in dict.fromkeys(table["body"].tolist()):
-        found[body] = {}
-        for quantity in ESTIMATED:
-            sizes = {cause: error_sizes(table, body, quantity, cause, dimension) for cause in CAUSES}
-            latest = {cause: _known(each[-1:]) for cause, each in sizes.items()}
-            greatest = {f"greatest_{cause}": _known(each) for cause, each in sizes.items()}
-            bar = _known(error_bars(*(sizes[cause][-1:] for cause in CAUSES)))
-            found[body][quantity] = {"bar": bar} | latest | greatest
-    return found
+    sizes = {
+        quantity: {cause: _error_sizes(table, quantity, cause, dimension) for cause in CAUSES} for quantity in ESTIMATED
+    }
+    rows: dict[str, list[int]] = {}
+    for row, body in enumerate(table["body"].tolist()):
+        rows.setdefault(body, []).append(row)
+    return {
+        body: {
+            quantity: _figures({cause: each[chosen] for cause, each in causes.items()})
+            for quantity, causes in sizes.items()
+        }
+        for body, chosen in rows.items()
+    }
 
 
-def error_sizes(table: Estimates, body: str, quantity: str, cause: str, dimension: int) -> FloatArray:
-    """Magnitude of the estimated error of a body's ``quantity`` by one ``cause``, a value for each output."""
+def _figures(sizes: Mapping[str, FloatArray]) -> dict[str, float | None]:
+    """Figures of the ``sizes`` (o,) of the errors of one quantity of one body by cause, over the outputs."""
+    latest = {cause: _known(each[-1:]) for cause, each in sizes.items()}
+    greatest = {f"greatest_{cause}": _known(each) for cause, each in sizes.items()}
+    bar = _known(error_bars(*(sizes[cause][-1:] for cause in CAUSES)))
+    return {"bar": bar} | latest | greatest
+
+
+def _error_sizes(table: Estimates, quantity: str, cause: str, dimension: int) -> FloatArray:
+    """Magnitude (rows,) of the estimated error of a ``quantity`` by one ``cause``."""
     names = quantity_columns(dimension)[quantity]
-    chosen = table["body"] == body
-    return np.asarray(np.linalg.norm([table[f"{name}_{cause}"][chosen] for name in names], axis=0))
+    return np.asarray(np.linalg.norm([table[f"{name}_{cause}"] for name in names], axis=0))
 
 
 def _known(sizes: FloatArray) -> float | None:

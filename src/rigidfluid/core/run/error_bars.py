@@ -13,8 +13,8 @@ from rigidfluid.core.model.memory import told_memory
 from rigidfluid.core.model.state import State
 from rigidfluid.core.output.records import Row, moving
 from rigidfluid.core.run.clock import Clock
-from rigidfluid.core.run.mesh_error import mesh_error, moving_rows
 from rigidfluid.core.run.process import one_openblas_thread
+from rigidfluid.core.run.refinement_error import moving_rows, refinement_error
 from rigidfluid.core.scene.run_tables import OutputTable
 from rigidfluid.errors import MeshError, RigidfluidError, StepError, StepRejected
 
@@ -33,7 +33,7 @@ class ErrorBars:
     have.
 
     The error by the steps is a third of the difference from a run beside it in twice as long ones, that by the mesh
-    is `mesh_error`. Not a number where nothing is known.
+    is `refinement_error`. Not a number where nothing is known.
     """
 
     def __init__(self, simulation: Simulation) -> None:
@@ -92,7 +92,9 @@ def _mesh_errors(simulation: Simulation) -> tuple[FloatArray, State]:
     state = simulation.state
     try:
         with told_memory(), one_openblas_thread():
-            errors, flow_error = mesh_error(simulation.system, state, simulation.time, simulation.mesh_updater.deform)
+            errors, flow_error = refinement_error(
+                simulation.system, state, simulation.time, simulation.mesh_updater.deform
+            )
     except (StepRejected, MeshError):
         return np.full_like(_values(simulation), np.nan), state
     except StepError as error:

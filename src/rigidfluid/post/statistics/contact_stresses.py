@@ -28,7 +28,8 @@ def contact_stresses(results: Results, rows: ContactRows) -> dict[str, FloatArra
 def _film(results: Results, rows: ContactRows, step: int) -> FloatArray:
     """Force of the film in each contact of one state on a (c, d) [force]."""
     system, row = results.system, int(np.searchsorted(results.bodies["step"][:, 0], step))
-    body_a, body_b = (np.array([results.names.index(name) for name in names]) for names in rows.names)
+    number = {name: row for row, name in enumerate(results.names)}
+    body_a, body_b = (np.array([number[name] for name in names]) for names in rows.names)
     radii = np.array([radius_of(body) for body in system.bodies])
     contacts = Contacts(
         body_a=body_a,

@@ -21,7 +21,7 @@ LEFT = 4.0 / 3.0
 """Error over what halved edges mend of it, where it is of second order: of a higher order it is less [1]."""
 
 
-def mesh_error(
+def refinement_error(
     system: System, state: State, time: float, deform: Callable[[State, Pose], Mesh]
 ) -> tuple[FloatArray, FlowError]:
     """Corrections of the twist and wrench of each body and mechanism (r, 2(d+k)), by which a ``state`` would be right,
