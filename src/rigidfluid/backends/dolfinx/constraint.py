@@ -13,7 +13,7 @@ from scipy import sparse
 
 from rigidfluid.backends.dolfinx.space import Space
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
-from rigidfluid.taylor_hood.elements.surfaces import Surfaces, joined
+from rigidfluid.taylor_hood.elements.surfaces import Surfaces
 from rigidfluid.taylor_hood.system.constraint import CROSS
 
 
@@ -40,9 +40,9 @@ class DistributedConstraint:
         self._first_twist = counts[0][1]
         place = np.full(space.numbering.nodes, -1)
         place[space.owned_nodes] = np.arange(len(space.owned_nodes))
-        nodes, carrier = joined([surfaces.motion_nodes[motion] for motion in self._free_motions])
+        nodes, body, carrier = surfaces.carried_nodes(self._free_motions)
         owned = place[nodes] >= 0
-        self._slaved, self._carrier = place[nodes[owned]], carrier[owned]
+        self._slaved, self._body, self._carrier = place[nodes[owned]], body[owned], carrier[owned]
         self._width = width
         self._matrix: Any = None
         self._lay_out()
@@ -64,12 +64,12 @@ class DistributedConstraint:
         return np.concatenate([at_vertices[self.velocity_free], np.ones(self.twists, dtype=bool)])
 
     def matrix(self, node_points: FloatArray, position: FloatArray) -> Any:
-        """P for nodes at ``node_points`` (nodes, d) and motions centred at ``position`` (N, d).
+        """P for nodes at ``node_points`` (nodes, d) and motions that carry each body about ``position`` (n, d).
 
         One matrix is filled again and again, as products with it are told from others by it.
         """
         d = self.space.numbering.dimension
-        arm = node_points[self.space.owned_nodes[self._slaved]] - position[self._free_motions][self._carrier]
+        arm = node_points[self.space.owned_nodes[self._slaved]] - position[self._body]
         ones = np.ones(len(self._order) - len(CROSS[d]) * len(arm))
         data = np.concatenate([ones, *(sign * arm[:, c] for _, _, c, sign in CROSS[d])])[self._order]
         if self._matrix is None:

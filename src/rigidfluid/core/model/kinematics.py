@@ -18,6 +18,11 @@ class Kinematics(Protocol):
     def relative_twist(self) -> FloatArray:
         """Twist g that relative motion adds, (n, d+k), or () where there is none [length/time | rad/time]."""
 
+    @property
+    def arm(self) -> FloatArray:
+        """Arms (n, d) from the centre of mass of the motion that carries each body to the body's, or () where each is
+        its own [length]."""
+
     def centres(self, bodies: Pose) -> FloatArray:
         """Centres of mass of the motions (N, d), with the ``bodies`` at this pose [length]."""
 
@@ -46,6 +51,7 @@ class EachItsOwn:
     """Kinematics of bodies that each are a motion of their own: G = 1, g = 0; arguments are returned unchanged."""
 
     relative_twist: FloatArray = np.zeros(())
+    arm: FloatArray = np.zeros(())
 
     def centres(self, bodies: Pose) -> FloatArray:
         return bodies.position

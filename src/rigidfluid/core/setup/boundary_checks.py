@@ -119,9 +119,6 @@ def check_periodic(model: Model) -> None:
     if not model.wet:
         _refuse_dry_drop(model)
         check_crossed(model, at)
-    elif model.mechanisms:
-        found = "'periodic' together with mechanisms in a fluid, whose parts may be in different images"
-        raise SceneError(at, found, "one of both", "Make the surfaces walls, or the parts bodies of their own.")
 
 
 def _refuse_dry_drop(model: Model) -> None:

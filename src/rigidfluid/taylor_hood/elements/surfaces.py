@@ -61,6 +61,7 @@ class Surfaces:
         on = [mesh.facets[mesh.markers == surface] for surface in range(bodies + len(conditions))]
         nodes = [numbering.surface_nodes(mesh, facets) for facets in on]
         self.body_nodes: list[IntArray] = nodes[:bodies]
+        self._carrier: IntArray = np.array(carrier, dtype=np.int64)
         self.motion_nodes = _nodes_of_motions(self.body_nodes, carrier)
         """Nodes that move with each motion; of a motion of one body, its nodes."""
         self.faces = [Face.from_facets(c, on[c.surface], nodes[c.surface], mesh, numbering) for c in conditions]
@@ -169,6 +170,16 @@ class Surfaces:
         held[self.frames.nodes] = 0.0
         held[self.images[self.velocity_free[self.originals[self.images]].any(axis=1)]] = 0.0
         return held
+
+    def carried_nodes(self, motions: IntArray) -> tuple[IntArray, IntArray, IntArray]:
+        """Nodes (c,) on the bodies that some ``motions`` (p,) carry, with the body (c,) of each, and the place (c,) of
+        its motion among these."""
+        place = np.full(max(self._carrier, default=-1) + 1, -1)
+        place[motions] = np.arange(len(motions))
+        carried = np.flatnonzero(place[self._carrier] >= 0)
+        nodes, number = joined([self.body_nodes[body] for body in carried])
+        body = carried[number]
+        return nodes, body, place[self._carrier[body]]
 
     def move_with_bodies(
         self, velocity: FloatArray, node_points: FloatArray, position: FloatArray, twist: FloatArray, chosen: BoolArray

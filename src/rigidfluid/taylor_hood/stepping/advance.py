@@ -210,7 +210,7 @@ def step_matrix(discretisation: Discretisation, fluid: FluidState, mesh: Mesh, s
         viscosity=problem.material.dynamic_viscosity,
         advection=flow - density * mesh_velocity,
         flow=flow - density * frame,
-        position=step.kinematics.centres(step.pose),
+        position=step.pose.position - step.kinematics.arm,
         mass_matrix=step.mass_matrix,
         prescribed=step.prescribed,
         frame=frame,

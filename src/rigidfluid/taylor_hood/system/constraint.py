@@ -14,7 +14,7 @@ from scipy import sparse
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.model.types import Mesh
-from rigidfluid.taylor_hood.elements.surfaces import Surfaces, joined, pressure_pin_vertex
+from rigidfluid.taylor_hood.elements.surfaces import Surfaces, pressure_pin_vertex
 
 # Entries of ω × r: (velocity component, component of ω, component of r, sign).
 CROSS = {
@@ -60,9 +60,8 @@ class Constraint:
         self.first_pressure = velocities + size * len(free_motions)
         self.unknowns = len(self.free_unknowns) + size * len(free_motions)
         self.free_columns = np.arange(len(self.free_unknowns)) + np.where(is_velocity, 0, size * len(free_motions))
-        nodes, self._carrier = joined([self.surfaces.motion_nodes[motion] for motion in free_motions])
-        self._slaved, self._free_motions = nodes, free_motions
-        first = velocities + size * self._carrier
+        nodes, self._body, place = self.surfaces.carried_nodes(free_motions)
+        self._slaved, first = nodes, velocities + size * place
         spread, which, self._along_axes = self.surfaces.spread(self.free_unknowns)
         rows = [spread, *(nodes * d + a for a in range(d)), *(nodes * d + a for a, *_ in CROSS[d])]
         columns = [self.free_columns[which], *(first + a for a in range(d)), *(first + d + b for _, b, *_ in CROSS[d])]
@@ -74,9 +73,9 @@ class Constraint:
         self._transposed_order = self.transposed.data.astype(np.int64) - 1
 
     def place(self, node_points: FloatArray, position: FloatArray) -> None:
-        """Fill P for nodes at ``node_points`` (nodes, d) and motions centred at ``position`` (N, d)."""
+        """Fill P for nodes at ``node_points`` (nodes, d) and motions that carry each body about ``position`` (n, d)."""
         d = self._numbering.dimension
-        arm = node_points[self._slaved] - position[self._free_motions][self._carrier]
+        arm = node_points[self._slaved] - position[self._body]
         flat = np.concatenate(
             [self._along_axes, np.ones(d * len(arm)), *(sign * arm[:, c] for _, _, c, sign in CROSS[d])]
         )

@@ -23,7 +23,8 @@ class CoupledMatrix:
     (nodes, d), already hold the density: c is what flows past the container, a what flows past the mesh; the term of
     ∇·c keeps convection from making energy.
     ``local``: what varies of the viscosity, over ``viscosity``, and how it changes with u.
-    ``position``, ``mass_matrix``, ``prescribed`` are of all motions that carry the bodies, as in `Step`. ``masses``: 𝓜,
+    ``mass_matrix``, ``prescribed`` are of all motions that carry the bodies, as in `Step`; ``position`` (n, d): the
+    centres of these motions in the images of the bodies that are on the mesh. ``masses``: 𝓜,
     the masses alone of a step's matrix, by which bodies and fluid respond to impulses at once; None where not wanted.
     """
 
