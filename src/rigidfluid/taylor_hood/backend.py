@@ -161,7 +161,7 @@ class TaylorHoodBackend(FluidBackend):
         from rigidfluid.taylor_hood.system.discretisation import kinetic_energy
 
         target = self._projecting_discretisation(new)
-        rest = resting_state(target.surfaces, new, pose, twist)
+        rest = resting_state(target.surfaces, new, new.images_of(pose), twist)
         state = among_other_bodies(fluid, old, filling, target, self.options.tolerance, rest)
         self.drop_factors()
         return with_momentum(state, target, new), kinetic_energy(target, new.geometry, state["velocity"])

@@ -75,14 +75,16 @@ class Exchange:
         return replace(old.select(stay), body_a=body_a[stay], body_b=body_b[stay])
 
     def filling(self, pose: Pose, twist: Twist) -> Filling:
-        """Rigid velocities where bodies have left, which were at ``pose`` with ``twist``."""
-        gone = np.setdiff1d(np.arange(len(self.before.bodies)), self.kept)
+        """Rigid velocities where bodies have left, which were at ``pose`` with ``twist``, or an image of them."""
+        gone, lattice = np.setdiff1d(np.arange(len(self.before.bodies)), self.kept), self.before.lattice
 
         def velocities(points: FloatArray) -> tuple[BoolArray, FloatArray]:
             left, velocity = np.zeros(len(points), dtype=bool), np.zeros_like(points)
             for body in gone:
-                inside = distance_to_body(pose, body, self.before.bodies[body], points) <= 0.0
-                arm = points[inside] - pose.position[body]
+                away = np.rint(lattice.components(points - pose.position[body])).astype(np.int64)
+                near = points - lattice.displacement(away)
+                inside = distance_to_body(pose, body, self.before.bodies[body], near) <= 0.0
+                arm = near[inside] - pose.position[body]
                 velocity[inside] = twist.velocity[body] + cross(twist.angular_velocity[body], arm)
                 left |= inside
             return left, velocity

@@ -318,8 +318,7 @@ class Simulation(Described):
         ------
         SceneError
             If the table is wrong, the body overlaps another one or a wall, or there are joints, mechanisms, springs to
-            the ground, a window, periodic surfaces in a fluid, several processes, or a backend whose bodies cannot
-            change.
+            the ground, a window, several processes, or a backend whose bodies cannot change.
         MeshError
             If no mesh can be made around it.
         """

@@ -19,7 +19,6 @@ def require_changeable(model: Model) -> None:
         "body.spring or body.free": [body for body in model.bodies if body.linked_to_ground],
         "domain.window": model.window,
         "scalar": model.fluid.scalar,
-        "boundary.type = 'periodic' in a fluid": model.wet and model.domain.periodic,
     }
     for key, value in found.items():
         if value:

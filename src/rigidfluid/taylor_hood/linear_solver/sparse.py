@@ -278,7 +278,12 @@ class SparseDiscretisation:
         """Raise `Wrong` where a solver's `memory` is of another mesh, or of other numbers of bodies and motions."""
         nodes, (count,) = (self.numbering.nodes, self.numbering.dimension), self._constraint.prescribed.shape
         directions = memory["mass_matrix"].shape[-1:]
-        shapes = {"advection": nodes, "flow": nodes, "position": (len(self.surfaces.body_nodes), nodes[1]), "frame": nodes[1:]}
+        shapes = {
+            "advection": nodes,
+            "flow": nodes,
+            "position": (len(self.surfaces.body_nodes), nodes[1]),
+            "frame": nodes[1:],
+        }
         shapes |= {"mass_matrix": (count, *directions, *directions)}
         twists = self.unknowns - len(self._constraint.free_unknowns)
         for name, width in (("corrections", self.unknowns), ("answers", self.unknowns), ("loads", twists)):

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.fluid_backend import Filling
 from rigidfluid.core.model.types import FluidState, Mesh, Pose, Twist
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.elements.sampling import Samples
 from rigidfluid.taylor_hood.elements.state import resting_state
+from rigidfluid.taylor_hood.elements.surfaces import Surfaces
 from rigidfluid.taylor_hood.system.discretisation import Discretisation, Projection, kinetic_energy
 from rigidfluid.taylor_hood.system.driving import fluxes
 
@@ -89,14 +91,27 @@ def among_other_bodies(
     on the target's mesh; see `FluidBackend.with_bodies`."""
     numbering, geometry, position = target.numbering, rest["points_previous"], rest["position"]
     node_points, every = numbering.node_points(geometry), np.ones(len(position), dtype=bool)
-    samples = Samples(old, Numbering.from_mesh(old), node_points)
-    velocity, pressure = samples.quadratic(fluid["velocity"]), samples.linear(fluid["pressure"])[: numbering.vertices]
+    before = Numbering.from_mesh(old)
+    samples = Samples(old, before, node_points)
+    velocity, carried = samples.quadratic(fluid["velocity"]), samples.linear(fluid["pressure"])
+    if old.periods is not None:
+        surfaces = _surfaces_among(len(old.periods.winding), target.problem, before, old)
+        carried += samples.periods @ surfaces.pressure_drops(fluid["pressure"])
+    pressure = carried[: numbering.vertices]
     left, filled = filling(node_points)
     velocity[left] = filled[left]
     target.surfaces.move_with_bodies(velocity, node_points, position, rest["twist"], every)
     velocity = project(target, tolerance, velocity, geometry, position)
     flow = {"velocity": velocity, "velocity_previous": velocity, "pressure": pressure, "pressure_previous": pressure}
     return {**rest, **flow}
+
+
+def _surfaces_among(bodies: int, problem: FluidProblem, numbering: Numbering, mesh: Mesh) -> Surfaces:
+    """Surfaces of a ``mesh`` with another number of ``bodies`` than the ``problem``, under its conditions."""
+    more = bodies - problem.bodies
+    numbered = [replace(condition, surface=condition.surface + more) for condition in problem.conditions]
+    conditions = [each if each.image is None else each.with_image(each.image + more) for each in numbered]
+    return Surfaces(numbering, mesh, conditions, range(bodies))
 
 
 def _bodies_displaced(old: Mesh, new: Mesh) -> FloatArray:
