@@ -34,7 +34,7 @@ def stream(ahead: float, end: float = 1.4) -> rigidfluid.Scene:
             "source": [grain | {"region": box(1.7 + ahead, 1.95 + ahead), "times": [0.1, 0.4]}],
             "sink": [{"region": box(0.35 + ahead, 0.6 + ahead)}],
             "contact": {"law": "normal", "range": 0.02, "epsilon": "auto"},
-            "mesh": {"size": 0.25, "size_body": 0.04},
+            "mesh": {"size": 0.2, "size_body": 0.025},
             "time": {"end": end, "step": 0.04},
             "output": {"every": 0.6},
         }
