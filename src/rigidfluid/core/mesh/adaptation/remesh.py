@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.geometry.mesher_unit import mesher_unit, significant
 from rigidfluid.core.mesh.adaptation.chosen_cut import crosses_bodies, cut_around, is_badly_cut
 from rigidfluid.core.mesh.adaptation.kept_cells import kept_cells
@@ -133,14 +133,15 @@ def remesh(
     size_at = partial(wanted_size, fluid_domain=fluid_domain, sizes=sizes)
     check_mesh(mesh, quality=0.0)
     new = best_remeshed(refine_surface(mesh, fluid_domain, sizes), fluid_domain, size_at, layers)
+    excess = longest_relative_edge(new, size_at)
     for _ in range(ROUNDS):
-        well_shaped = lowest_quality(new) > WORST_QUALITY and longest_relative_edge(new, size_at) <= LONGEST_EDGE
+        well_shaped = lowest_quality(new) > WORST_QUALITY and excess <= LONGEST_EDGE
         if well_shaped and not len(long_edges(new, fluid_domain, sizes, LONGEST)[0]):
             break
         refined = refine_films(refine_surface(new, fluid_domain, sizes), fluid_domain, sizes)
         new = best_remeshed(refined, fluid_domain, size_at, layers)
+        excess = longest_relative_edge(new, size_at)
     check_mesh(new, quality=WORST_QUALITY)
-    excess = longest_relative_edge(new, size_at)
     if excess > LONGEST_EDGE:
         found = f"an edge {excess:.3g} times longer than wanted after re-meshing"
         raise MeshError("mesh", found, f"at most {LONGEST_EDGE:g} times", REMEDY)
@@ -156,9 +157,11 @@ def best_remeshed(
     """
     made: list[Mesh] = []
     failures: list[MeshError] = []
-    for kept, gradation in product(sorted({layers, 0}, reverse=True), GRADATIONS):
+    given, count = Given.from_mesh(mesh, size_at), len(fluid_domain.bodies)
+    ways = (kept_cells(mesh, count, size_at, kept) for kept in sorted({layers, 0}, reverse=True))
+    for cells, gradation in ((cells, gradation) for cells in ways for gradation in GRADATIONS):
         try:
-            made.append(remeshed_once(mesh, fluid_domain, size_at, kept, gradation))
+            made.append(remeshed_once(mesh, fluid_domain, given, cells, gradation))
         except MeshError as error:
             failures.append(error)
         else:
@@ -169,18 +172,28 @@ def best_remeshed(
     return max(made, key=lowest_quality)
 
 
-def remeshed_once(
-    mesh: Mesh, fluid_domain: FluidDomain, size_at: Callable[[FloatArray], FloatArray], layers: int, gradation: float
-) -> Mesh:
-    """Re-mesh by one call of MMG, repair round-off and check the result; ``size_at(points)`` is the wanted size
-    (N,)."""
-    bodies, unit = len(fluid_domain.bodies), mesher_unit(np.ptp(mesh.points, axis=0))
-    given = rounded(replace(mesh, points=mesh.points / unit))
-    kept = Kept(on_kept_surfaces(mesh, fluid_domain), kept_cells(mesh, bodies, size_at, layers))
-    placed = unit * given.points
-    made = run_mmg(given, kept, bodies, significant(size_at(placed) / unit), gradation)
-    outer, made = ~on_kept_surfaces(made, fluid_domain), replace(made, points=unit * made.points)
-    restored = with_kept_facets(made, outer, mesh, kept, placed)
+class Given(NamedTuple):
+    """What MMG is given of a mesh: ``mesh``, with rounded lengths over ``unit`` [length], and the sizes ``wanted``
+    (N,) there over it [1]."""
+
+    mesh: Mesh
+    unit: float
+    wanted: FloatArray
+
+    @classmethod
+    def from_mesh(cls, mesh: Mesh, size_at: Callable[[FloatArray], FloatArray]) -> Given:
+        unit = mesher_unit(np.ptp(mesh.points, axis=0))
+        scaled = rounded(replace(mesh, points=mesh.points / unit))
+        return cls(scaled, unit, significant(size_at(unit * scaled.points) / unit))
+
+
+def remeshed_once(mesh: Mesh, fluid_domain: FluidDomain, given: Given, cells: BoolArray, gradation: float) -> Mesh:
+    """Re-mesh by one call of MMG, to which the mesh is ``given`` and which keeps these ``cells`` (M,), repair round-off
+    and check the result."""
+    bodies, kept = len(fluid_domain.bodies), Kept(on_kept_surfaces(mesh, fluid_domain), cells)
+    made = run_mmg(given.mesh, kept, bodies, given.wanted, gradation)
+    outer, made = ~on_kept_surfaces(made, fluid_domain), replace(made, points=given.unit * made.points)
+    restored = with_kept_facets(made, outer, mesh, kept, given.unit * given.mesh.points)
     new = orient(put_back(restored, bodies, fluid_domain.domain, curved=False))
     check_mesh(new, quality=0.0)
     check_volume(new, float(cell_volumes(mesh.points, mesh.cells).sum()), "before re-meshing")
