@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
@@ -33,6 +33,9 @@ GRADATIONS = (1.3, 1.4, 1.2)
 GOOD_QUALITY = 0.3
 """A re-made mesh is good, and the first one that is good is taken, when all its cells but those in films are above
 this quality."""
+
+WEDGED = 2.0
+"""Kept cells are given up within so many longest edges of a bad cell between them."""
 
 FLAT_IN_FILM = 1.0
 """A cell must be flat where the gap is at most so wide beside its longest edge."""
@@ -153,23 +156,49 @@ def best_remeshed(
 ) -> Mesh:
     """Re-mesh by MMG with the first gradation that gives good cells, else take the best of all gradations.
 
-    The ``layers`` of cells are given up if no gradation gives good cells with them kept.
+    Of the ``layers`` of cells those around bad ones are given up first, as these are most often wedged between them;
+    all are if no gradation gives good cells with the others kept.
     """
     made: list[Mesh] = []
     failures: list[MeshError] = []
-    given, count = Given.from_mesh(mesh, size_at), len(fluid_domain.bodies)
-    ways = (kept_cells(mesh, count, size_at, kept) for kept in sorted({layers, 0}, reverse=True))
-    for cells, gradation in ((cells, gradation) for cells in ways for gradation in GRADATIONS):
+    given, kept = Given.from_mesh(mesh, size_at), kept_cells(mesh, len(fluid_domain.bodies), size_at, layers)
+    for cells, gradation in _tries(mesh, kept, fluid_domain, made):
         try:
             made.append(remeshed_once(mesh, fluid_domain, given, cells, gradation))
         except MeshError as error:
             failures.append(error)
         else:
-            if _lowest_outside_films(made[-1], fluid_domain) > GOOD_QUALITY:
+            if not len(_bad_outside_films(made[-1], fluid_domain)):
                 break
     if not made:
         raise failures[0]
     return max(made, key=lowest_quality)
+
+
+def _tries(
+    mesh: Mesh, kept: BoolArray, fluid_domain: FluidDomain, made: list[Mesh]
+) -> Iterator[tuple[BoolArray, float]]:
+    """Yield cells to keep (M,) and a gradation, one pair after the other until a mesh is good: all that are ``kept``,
+    those away from bad cells of what was ``made`` so, none."""
+    if kept.any():
+        yield kept, GRADATIONS[0]
+        others = kept
+        if made:
+            others = kept & _away(mesh, made[-1], _bad_outside_films(made[-1], fluid_domain))
+        for gradation in GRADATIONS if (others != kept).any() else GRADATIONS[1:]:
+            yield others, gradation
+    for gradation in GRADATIONS:
+        yield np.zeros_like(kept), gradation
+
+
+def _away(mesh: Mesh, made: Mesh, bad: IntArray) -> BoolArray:
+    """Tell whether each cell of a ``mesh`` (M,) is farther than WEDGED of their longest edges from the ``bad`` cells
+    (B,) of the mesh ``made``."""
+    centres, away = mesh.points[mesh.cells].mean(axis=1), np.ones(len(mesh.cells), dtype=bool)
+    reach = WEDGED * edge_lengths(made.points, made.cells[bad]).max(axis=1)
+    for place, far in zip(made.points[made.cells[bad]].mean(axis=1), reach, strict=True):
+        away &= np.linalg.norm(centres - place, axis=1) > far
+    return away
 
 
 class Given(NamedTuple):
@@ -215,14 +244,12 @@ def lowest_quality(mesh: Mesh) -> float:
     return float(cell_quality(mesh.points, mesh.cells).min())
 
 
-def _lowest_outside_films(mesh: Mesh, fluid_domain: FluidDomain) -> float:
-    """Quality of the worst cell that is not as flat as the film it is in [1]."""
-    quality = cell_quality(mesh.points, mesh.cells)
-    bad = np.flatnonzero(quality <= GOOD_QUALITY)
+def _bad_outside_films(mesh: Mesh, fluid_domain: FluidDomain) -> IntArray:
+    """Cells (B,) that are not good, but those as flat as the film they are in."""
+    bad = np.flatnonzero(cell_quality(mesh.points, mesh.cells) <= GOOD_QUALITY)
     width = fluid_domain.gap_widths(mesh.points[mesh.cells[bad]].mean(axis=1))
     longest = edge_lengths(mesh.points, mesh.cells[bad]).max(axis=1)
-    quality[bad[width <= FLAT_IN_FILM * longest]] = 1.0
-    return float(quality.min())
+    return bad[width > FLAT_IN_FILM * longest]
 
 
 def longest_relative_edge(mesh: Mesh, size_at: Callable[[FloatArray], FloatArray]) -> float:
