@@ -19,7 +19,8 @@ _FILM = 0.1
 """Thickness of a film, over the radius, below which its resistance outweighs the body's own."""
 
 ALONE = 12
-"""Largest number of bodies whose responses are evaluated one by one; more share right sides with others far away."""
+"""Largest number of bodies in a model whose responses are evaluated one by one; of more, those far apart share right
+sides."""
 
 FAR = 3.0
 """Distance of two bodies, over the sum of their radii, beyond which they hardly respond to each other's impulses: the
@@ -46,7 +47,7 @@ def updated_model(
     bodies, d0 = velocities // step.load.shape[1], float(step.derivative[0])
     now = Evaluation(_film_resistance(system, contacts)[bodies], twist.ravel()[velocities])
     inviscid, viscous, before = _remembered(known, velocities, d0)
-    shared = len(np.unique(bodies)) > ALONE
+    shared = share_sides(velocities, step.load.shape[1])
     arm = twist_arms(system)[bodies, velocities % step.load.shape[1]] / reaches(system)[0][bodies]
     changed = _changes(now, before, bodies, arm / d0)
     fresh = ~(changed <= (CHANGED_SHARED if shared else CHANGED))
@@ -57,6 +58,12 @@ def updated_model(
             _take_over(matrix, found, fresh)
     evaluation = Evaluation(*(np.where(fresh, new, old) for new, old in zip(now.arrays, before.arrays, strict=True)))
     return reduced_model(velocities, inviscid, viscous, d0, evaluation, shared)
+
+
+def share_sides(velocities: IntArray, width: int) -> bool:
+    """Tell whether so many motions, of ``width`` components each, have these ``velocities`` (c,) that those far apart
+    share right sides."""
+    return len(np.unique(velocities // width)) > ALONE
 
 
 def _changes(now: Evaluation, before: Evaluation, bodies: IntArray, reduced_time: FloatArray) -> FloatArray:
@@ -120,7 +127,9 @@ def _evaluated(
     width = step.load.shape[1]
     bodies, turn = np.divmod(velocities[fresh], width)
     position = step.kinematics.centres(step.pose)
-    group, components = _groups(system, position, bodies), np.unique(turn)
+    shared = share_sides(velocities, width)
+    group = _groups_apart(system, position, bodies) if shared else np.unique(bodies, return_inverse=True)[1]
+    components = np.unique(turn)
     side = group * len(components) + np.searchsorted(components, turn)
     numbers, side = np.unique(side, return_inverse=True)
     impulses = np.zeros((len(numbers), *step.load.shape))
@@ -134,12 +143,9 @@ def _evaluated(
     return inviscid, viscous
 
 
-def _groups(system: System, position: FloatArray, bodies: IntArray) -> IntArray:
-    """Group of each of ``bodies`` (f,), whose members are far apart; each body is a group of its own where they are
-    few."""
+def _groups_apart(system: System, position: FloatArray, bodies: IntArray) -> IntArray:
+    """Group of each of ``bodies`` (f,), whose members are far apart."""
     each, place = np.unique(bodies, return_inverse=True)
-    if len(each) <= ALONE:
-        return place
     reach = reaches(system)[1][each]
     apart = np.linalg.norm(position[each, None] - position[None, each], axis=2)
     near = apart < FAR * (reach[:, None] + reach[None, :])

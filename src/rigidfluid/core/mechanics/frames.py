@@ -23,4 +23,6 @@ def to_world(pose: Pose, body: int, points: FloatArray) -> FloatArray:
 
 def distance_to_body(pose: Pose, body: int, shape: Body, points: FloatArray) -> FloatArray:
     """Signed distance of world points to one body's surface, (N,), > 0 in the fluid [length]."""
+    if shape.radius is not None:  # a ball's does not depend on how it has turned
+        return shape.signed_distance(points - pose.position[body])
     return shape.signed_distance(to_body_frame(pose, body, points))

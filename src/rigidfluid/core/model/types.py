@@ -277,6 +277,7 @@ class Step:
     ``turning`` (n, d+k): impulses whose inviscid response is added to the convecting velocity,
     zero but for steps in which contacts turn bodies around [force·time | force·length·time].
     ``provisional``: the step will be solved again, along another path of the bodies, and five digits do.
+    ``shared``: many bodies share right sides in the solve for its impulse responses, of which three digits do.
     ``links``: what else holds the motions at the new time. ``stresslets``: the bodies' stresslets are wanted;
     ``cell_errors``: errors of cells are wanted.
     """
@@ -295,6 +296,7 @@ class Step:
     turning: FloatArray
     kinematics: Kinematics = EACH_ITS_OWN
     provisional: bool = False
+    shared: bool = False
     links: Links = NO_LINKS
     stresslets: bool = False
     cell_errors: bool = False

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rigidfluid.core.coupling.impulse_responses import ALONE, updated_model
+from rigidfluid.core.coupling.impulse_responses import ALONE, share_sides, updated_model
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.mechanics.single_bodies import SingleBodies
 from rigidfluid.core.model.kinematics import EACH_ITS_OWN
@@ -198,3 +198,28 @@ def test_many_share_right_sides():
     for body in own:
         block = np.ix_(body, body)
         np.testing.assert_allclose(model.inverse_mass[block], many.inviscid[block], atol=0.02)
+
+
+def test_few_of_many_that_changed_share_right_sides_too():
+    """Those far apart, of a model of many, however few are evaluated."""
+    count = 4 * ALONE
+    many = Bodies(row(count, 0.25))
+    gaps = np.full(count, 0.01)
+    first = many.model(gaps, None)
+    sides, response = [], many.response
+
+    def counted(fluid: Any, mesh: Any, step: Any, impulses: FloatArray) -> Response:
+        sides.append(len(impulses))
+        return response(fluid, mesh, step, impulses)
+
+    many.response = counted  # type: ignore[method-assign]
+    gaps[:: 4 * 3] *= 1.5
+    many.model(gaps, first)
+    np.testing.assert_array_equal(many.evaluated[1], np.arange(count)[:: 4 * 3])
+    assert sides == [WIDTH]
+
+
+@pytest.mark.parametrize(("bodies", "share"), [(ALONE, False), (ALONE + 1, True)])
+def test_many_bodies_share_whatever_their_components(bodies, share):
+    two_of_three = (np.arange(bodies)[:, None] * WIDTH + np.arange(2)).ravel()
+    assert share_sides(two_of_three, WIDTH) is share

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from mesh_tools import ball, box, box_walls, upright
 
+from rigidfluid.core.mesh.adaptation import remesh as module
 from rigidfluid.core.mesh.adaptation.kept_cells import LAYERS, kept_cells
 from rigidfluid.core.mesh.adaptation.remesh import initial_mesh, remesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
@@ -45,6 +48,34 @@ def test_good_cells_near_a_body_are_kept_to_the_last_bit(dimension):
     made = remesh(moved, around, sizes, LAYERS)
     assert cells_at(moved, kept) <= cells_at(made, slice(None))
     assert len(made.cells) != len(moved.cells), "MMG has done something elsewhere"
+
+
+def test_cells_around_a_bad_one_are_given_up_before_the_others(monkeypatch):
+    """The first mesh has a flat cell next to the body; the second keeps all cells but those there."""
+    mesh, around, sizes = meshed(2, 1.0)
+    kept, made = [], module.remeshed_once
+
+    def one_flat_cell(given_mesh, fluid_domain, given, cells, gradation):
+        kept.append(cells)
+        new = made(given_mesh, fluid_domain, given, cells, gradation)
+        if len(kept) > 1:
+            return new
+        flat = new.cells[np.isin(new.cells, new.facets[new.markers == 0]).sum(axis=1) == 2][0]
+        apex, ends = np.setdiff1d(flat, new.facets), np.intersect1d(flat, new.facets)
+        points = new.points.copy()
+        points[apex] = 0.01 * points[apex] + 0.99 * points[ends].mean(axis=0)
+        bad.append(points[ends].mean(axis=0))
+        return replace(new, points=points)
+
+    bad = []
+    monkeypatch.setattr(module, "remeshed_once", one_flat_cell)
+    module.best_remeshed(mesh, around, lambda points: wanted_size(points, around, sizes), LAYERS)
+    first, second = kept
+    given_up = first & ~second
+    distance = np.linalg.norm(mesh.points[mesh.cells].mean(axis=1) - bad[0], axis=1)
+    assert 0 < given_up.sum() < 0.3 * first.sum()
+    assert distance[given_up].max() < 4.0 * sizes.size_body
+    assert not second[distance < sizes.size_body].any()
 
 
 @pytest.mark.parametrize("wanted", [0.02, 0.4])

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
-from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.geometry.mesher_unit import mesher_unit, significant
 from rigidfluid.core.mesh.adaptation.chosen_cut import crosses_bodies, cut_around, is_badly_cut
 from rigidfluid.core.mesh.adaptation.kept_cells import kept_cells
@@ -33,6 +33,9 @@ GRADATIONS = (1.3, 1.4, 1.2)
 GOOD_QUALITY = 0.3
 """A re-made mesh is good, and the first one that is good is taken, when all its cells but those in films are above
 this quality."""
+
+WEDGED = 2.0
+"""Kept cells are given up within so many longest edges of a bad cell between them."""
 
 FLAT_IN_FILM = 1.0
 """A cell must be flat where the gap is at most so wide beside its longest edge."""
@@ -133,14 +136,15 @@ def remesh(
     size_at = partial(wanted_size, fluid_domain=fluid_domain, sizes=sizes)
     check_mesh(mesh, quality=0.0)
     new = best_remeshed(refine_surface(mesh, fluid_domain, sizes), fluid_domain, size_at, layers)
+    excess = longest_relative_edge(new, size_at)
     for _ in range(ROUNDS):
-        well_shaped = lowest_quality(new) > WORST_QUALITY and longest_relative_edge(new, size_at) <= LONGEST_EDGE
+        well_shaped = lowest_quality(new) > WORST_QUALITY and excess <= LONGEST_EDGE
         if well_shaped and not len(long_edges(new, fluid_domain, sizes, LONGEST)[0]):
             break
         refined = refine_films(refine_surface(new, fluid_domain, sizes), fluid_domain, sizes)
         new = best_remeshed(refined, fluid_domain, size_at, layers)
+        excess = longest_relative_edge(new, size_at)
     check_mesh(new, quality=WORST_QUALITY)
-    excess = longest_relative_edge(new, size_at)
     if excess > LONGEST_EDGE:
         found = f"an edge {excess:.3g} times longer than wanted after re-meshing"
         raise MeshError("mesh", found, f"at most {LONGEST_EDGE:g} times", REMEDY)
@@ -152,35 +156,73 @@ def best_remeshed(
 ) -> Mesh:
     """Re-mesh by MMG with the first gradation that gives good cells, else take the best of all gradations.
 
-    The ``layers`` of cells are given up if no gradation gives good cells with them kept.
+    Of the ``layers`` of cells those around bad ones are given up first, as these are most often wedged between them;
+    all are if no gradation gives good cells with the others kept.
     """
     made: list[Mesh] = []
     failures: list[MeshError] = []
-    for kept, gradation in product(sorted({layers, 0}, reverse=True), GRADATIONS):
+    given, kept = Given.from_mesh(mesh, size_at), kept_cells(mesh, len(fluid_domain.bodies), size_at, layers)
+    for cells, gradation in _tries(mesh, kept, fluid_domain, made):
         try:
-            made.append(remeshed_once(mesh, fluid_domain, size_at, kept, gradation))
+            made.append(remeshed_once(mesh, fluid_domain, given, cells, gradation))
         except MeshError as error:
             failures.append(error)
         else:
-            if _lowest_outside_films(made[-1], fluid_domain) > GOOD_QUALITY:
+            if not len(_bad_outside_films(made[-1], fluid_domain)):
                 break
     if not made:
         raise failures[0]
     return max(made, key=lowest_quality)
 
 
-def remeshed_once(
-    mesh: Mesh, fluid_domain: FluidDomain, size_at: Callable[[FloatArray], FloatArray], layers: int, gradation: float
-) -> Mesh:
-    """Re-mesh by one call of MMG, repair round-off and check the result; ``size_at(points)`` is the wanted size
-    (N,)."""
-    bodies, unit = len(fluid_domain.bodies), mesher_unit(np.ptp(mesh.points, axis=0))
-    given = rounded(replace(mesh, points=mesh.points / unit))
-    kept = Kept(on_kept_surfaces(mesh, fluid_domain), kept_cells(mesh, bodies, size_at, layers))
-    placed = unit * given.points
-    made = run_mmg(given, kept, bodies, significant(size_at(placed) / unit), gradation)
-    outer, made = ~on_kept_surfaces(made, fluid_domain), replace(made, points=unit * made.points)
-    restored = with_kept_facets(made, outer, mesh, kept, placed)
+def _tries(
+    mesh: Mesh, kept: BoolArray, fluid_domain: FluidDomain, made: list[Mesh]
+) -> Iterator[tuple[BoolArray, float]]:
+    """Yield cells to keep (M,) and a gradation, one pair after the other until a mesh is good: all that are ``kept``,
+    those away from bad cells of what was ``made`` so, none."""
+    if kept.any():
+        yield kept, GRADATIONS[0]
+        others = kept
+        if made:
+            others = kept & _away(mesh, made[-1], _bad_outside_films(made[-1], fluid_domain))
+        for gradation in GRADATIONS if (others != kept).any() else GRADATIONS[1:]:
+            yield others, gradation
+    for gradation in GRADATIONS:
+        yield np.zeros_like(kept), gradation
+
+
+def _away(mesh: Mesh, made: Mesh, bad: IntArray) -> BoolArray:
+    """Tell whether each cell of a ``mesh`` (M,) is farther than WEDGED of their longest edges from the ``bad`` cells
+    (B,) of the mesh ``made``."""
+    centres, away = mesh.points[mesh.cells].mean(axis=1), np.ones(len(mesh.cells), dtype=bool)
+    reach = WEDGED * edge_lengths(made.points, made.cells[bad]).max(axis=1)
+    for place, far in zip(made.points[made.cells[bad]].mean(axis=1), reach, strict=True):
+        away &= np.linalg.norm(centres - place, axis=1) > far
+    return away
+
+
+class Given(NamedTuple):
+    """What MMG is given of a mesh: ``mesh``, with rounded lengths over ``unit`` [length], and the sizes ``wanted``
+    (N,) there over it [1]."""
+
+    mesh: Mesh
+    unit: float
+    wanted: FloatArray
+
+    @classmethod
+    def from_mesh(cls, mesh: Mesh, size_at: Callable[[FloatArray], FloatArray]) -> Given:
+        unit = mesher_unit(np.ptp(mesh.points, axis=0))
+        scaled = rounded(replace(mesh, points=mesh.points / unit))
+        return cls(scaled, unit, significant(size_at(unit * scaled.points) / unit))
+
+
+def remeshed_once(mesh: Mesh, fluid_domain: FluidDomain, given: Given, cells: BoolArray, gradation: float) -> Mesh:
+    """Re-mesh by one call of MMG, to which the mesh is ``given`` and which keeps these ``cells`` (M,), repair round-off
+    and check the result."""
+    bodies, kept = len(fluid_domain.bodies), Kept(on_kept_surfaces(mesh, fluid_domain), cells)
+    made = run_mmg(given.mesh, kept, bodies, given.wanted, gradation)
+    outer, made = ~on_kept_surfaces(made, fluid_domain), replace(made, points=given.unit * made.points)
+    restored = with_kept_facets(made, outer, mesh, kept, given.unit * given.mesh.points)
     new = orient(put_back(restored, bodies, fluid_domain.domain, curved=False))
     check_mesh(new, quality=0.0)
     check_volume(new, float(cell_volumes(mesh.points, mesh.cells).sum()), "before re-meshing")
@@ -202,14 +244,12 @@ def lowest_quality(mesh: Mesh) -> float:
     return float(cell_quality(mesh.points, mesh.cells).min())
 
 
-def _lowest_outside_films(mesh: Mesh, fluid_domain: FluidDomain) -> float:
-    """Quality of the worst cell that is not as flat as the film it is in [1]."""
-    quality = cell_quality(mesh.points, mesh.cells)
-    bad = np.flatnonzero(quality <= GOOD_QUALITY)
+def _bad_outside_films(mesh: Mesh, fluid_domain: FluidDomain) -> IntArray:
+    """Cells (B,) that are not good, but those as flat as the film they are in."""
+    bad = np.flatnonzero(cell_quality(mesh.points, mesh.cells) <= GOOD_QUALITY)
     width = fluid_domain.gap_widths(mesh.points[mesh.cells[bad]].mean(axis=1))
     longest = edge_lengths(mesh.points, mesh.cells[bad]).max(axis=1)
-    quality[bad[width <= FLAT_IN_FILM * longest]] = 1.0
-    return float(quality.min())
+    return bad[width > FLAT_IN_FILM * longest]
 
 
 def longest_relative_edge(mesh: Mesh, size_at: Callable[[FloatArray], FloatArray]) -> float:
