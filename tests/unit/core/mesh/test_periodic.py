@@ -195,9 +195,15 @@ def test_a_backend_without_periodic_faces_refuses_them_by_name() -> None:
 def test_a_mesh_that_is_filled_between_facets_has_no_periodic_surfaces() -> None:
     domain = Box(BoxOptions(lower=(0.0, 0.0), upper=(2.0, 1.0)), 2)
     domain.periodic = ((0, 1),)
-    with pytest.raises(MeshError, match=r"mesh.inserter: found 'fill' with periodic surfaces; allowed is 'cad'"):
+    with pytest.raises(MeshError, match=r"mesh.inserter: found 'fill' with periodic surfaces; allowed is .cad."):
         Inserter("fill").chosen([ball(0.15)], domain)
     assert Inserter().chosen([ball(0.15)], domain) == "cad"
+
+
+def test_a_body_of_facets_is_refused_before_any_mesh_is_made() -> None:
+    square = {"type": "polygon", "points": [[0.0, 0.0], [0.2, 0.0], [0.2, 0.2]], "density": 1.0, "position": [0.6, 0.6]}
+    with pytest.raises(SceneError, match=r"mesh.inserter: found body.0 made of facets with periodic surfaces; allowed"):
+        build_system(channel(body=[square]))
 
 
 def test_no_periodic_surface_repels() -> None:
