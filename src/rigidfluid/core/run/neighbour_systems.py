@@ -12,7 +12,9 @@ from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.geometry.value_types import describe
 from rigidfluid.core.model.system import System
+from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.overrides import assign
+from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.core.setup.assemble import assemble
 from rigidfluid.errors import RigidfluidError, SceneError
 
@@ -47,28 +49,33 @@ def system_pairs(document: Mapping[str, Any], system: System, keys: Sequence[str
     if len(system.solved_joints.links(system.motions.pose, 0.0).rate):
         found = "joints, held directions or dampers in a fluid"
         raise SceneError(_FIELD, found, "bodies without them", "Run with two values.")
-    return [system_pair(document, system, key) for key in keys]
+    with all_told() as ask:
+        return [ask(_system_pair, document, system, keys, number) for number in range(len(keys))]
 
 
-def system_pair(document: Mapping[str, Any], system: System, key: str) -> SystemPair:
-    """Systems of the scene in a ``document``, whose own is ``system``, on both sides of the value of a ``key``.
+def _system_pair(document: Mapping[str, Any], system: System, keys: Sequence[str], number: int) -> SystemPair:
+    """Systems of the scene in a ``document``, whose own is ``system``, on both sides of the value of one of ``keys``.
 
-    Raises SceneError where the key has no number to differ, or the mesh would be another one.
+    Raises SceneError where the key is there before, has no number to differ, or the mesh would be another one.
     """
-    value = _number(document, key)
+    key, at = keys[number], f"{_FIELD}.{number}"
+    if key in keys[:number]:
+        raise SceneError(at, f"{key!r} again", "each key once", "Leave it out here.")
+    value = _number(document, key, at)
     half = _SHARE * abs(value)
-    plus, minus = (_system(document, key, each) for each in (value + half, value - half))
+    plus, minus = (_system(document, key, at, each) for each in (value + half, value - half))
     if not (_has_same_shapes(system, plus) and _has_same_shapes(system, minus)):
-        raise SceneError(_FIELD, repr(key), "a key on which no shape and no place depends", "Run with two values.")
+        raise SceneError(at, repr(key), "a key on which no shape and no place depends", "Run with two values.")
     return SystemPair(key, half, plus, minus)
 
 
-def _number(document: Mapping[str, Any], key: str) -> float:
+def _number(document: Mapping[str, Any], key: str, at: str) -> float:
+    """Number of a ``key``, also in a list of its own, as an angular velocity in 2D."""
     table, *rest = key.split(".")
     remedy = "Name a key with a number as fluid.viscosity, body.0.density or fluid.gravity.1."
     if table in _SHAPES:
         found = f"{key!r}, on which meshes or steps depend"
-        raise SceneError(_FIELD, found, "a key of another table", "Run with two values.")
+        raise SceneError(at, found, "a key of another table", "Run with two values.")
     value: Any = document
     for part in (table, *rest):
         if isinstance(value, Mapping) and part in value:
@@ -76,13 +83,16 @@ def _number(document: Mapping[str, Any], key: str) -> float:
         elif isinstance(value, list | tuple) and part.isdecimal() and int(part) < len(value):
             value = value[int(part)]
         else:
-            raise SceneError(_FIELD, repr(key), "a key that the scene has", remedy)
+            known = [*value] if isinstance(value, Mapping) else []
+            raise SceneError(at, repr(key), "a key that the scene has", suggestion(part, known) or remedy)
+    if isinstance(value, list | tuple) and len(value) == 1:
+        (value,) = value
     if isinstance(value, bool) or not isinstance(value, int | float) or value == 0:
-        raise SceneError(_FIELD, f"{key!r} with {describe(value)}", "a key with a number other than 0", remedy)
+        raise SceneError(at, f"{key!r} with {describe(value)}", "a key with a number other than 0", remedy)
     return float(value)
 
 
-def _system(document: Mapping[str, Any], key: str, value: float) -> System:
+def _system(document: Mapping[str, Any], key: str, at: str, value: float) -> System:
     tables = deepcopy(dict(document))
     assign(tables, key, value)
     if tables["fluid"].get("backend") != "dry":
@@ -90,7 +100,7 @@ def _system(document: Mapping[str, Any], key: str, value: float) -> System:
     try:
         return assemble(model_of(scene_from_dict(tables)))
     except RigidfluidError as error:
-        raise error.renamed(lambda subject: f"{_FIELD} with {key} = {value!r}: {subject}") from error
+        raise error.renamed(lambda subject: f"{at} with {key} = {value!r}: {subject}") from error
 
 
 def _has_same_shapes(system: System, other: System) -> bool:

@@ -6,9 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rigidfluid.errors import SceneError
+from rigidfluid.core.mesh.generation.inserter import Inserter
+from rigidfluid.errors import MeshError, SceneError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rigidfluid.core.model.body import Body
     from rigidfluid.core.model.domain import Domain
     from rigidfluid.core.scene.mesh_tables import MeshTable
     from rigidfluid.core.scene.run_tables import TimeTable
@@ -48,6 +52,14 @@ def check_cells(mesh: MeshTable, domain: Domain) -> None:
             found = f"one from {list(box.lower)} to {list(box.upper)}"
             raise SceneError(f"mesh.refine.{number}", found, allowed, "Move the box into it.")
         _check_count(f"mesh.refine.{number}.size", box.size, float(np.prod(inside)), "this box", domain.dimension)
+
+
+def check_inserter(mesh: MeshTable, shapes: Sequence[Body], domain: Domain) -> None:
+    """Refuse shapes that no mesher puts into this domain; raises SceneError."""
+    try:
+        Inserter(mesh.inserter).chosen(shapes, domain)
+    except MeshError as error:
+        raise SceneError(error.subject, error.found, error.allowed, error.remedy) from error
 
 
 def _check_size(field: str, size: float, mesh: MeshTable) -> None:

@@ -18,7 +18,7 @@ from rigidfluid.core.setup.contact_laws import check_laws
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.core.setup.joint_checks import check_joints
 from rigidfluid.core.setup.mechanism_checks import refuse_invalid
-from rigidfluid.core.setup.mesh_checks import check_cells, check_mesh_table
+from rigidfluid.core.setup.mesh_checks import check_cells, check_inserter, check_mesh_table
 from rigidfluid.core.setup.pair_forces import check_pair_forces
 from rigidfluid.core.setup.placed_bodies import check_names, doubled
 from rigidfluid.core.setup.quick_strokes import refuse_quick_mechanisms
@@ -93,6 +93,7 @@ def _check_fluid(model: Model, fluid: Fluid) -> None:
     fluid.fastest_at_start(model.domain)  # says where it is not finite
     check_scalar(model, fluid)
     _check_mesh(model, fluid.mesh)
+    check_inserter(fluid.mesh, model.shapes, model.domain)
     check_oblique(model)
     check_inflow(model)
 

@@ -23,10 +23,12 @@ from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation.inserter import Inserter
 from rigidfluid.core.mesh.generation.periodic import with_exact_images
 from rigidfluid.core.mesh.generation.refine_surface import long_edges
+from rigidfluid.core.mesh.mesh_quality import cell_quality
 from rigidfluid.core.mesh.size.size_field import LONGEST, Sizes
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.output.checkpoint import read_checkpoint
 from rigidfluid.core.run.run import run
+from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.domains.box import Box, BoxOptions
 from rigidfluid.errors import MeshError, SceneError
@@ -195,9 +197,28 @@ def test_a_backend_without_periodic_faces_refuses_them_by_name() -> None:
 def test_a_mesh_that_is_filled_between_facets_has_no_periodic_surfaces() -> None:
     domain = Box(BoxOptions(lower=(0.0, 0.0), upper=(2.0, 1.0)), 2)
     domain.periodic = ((0, 1),)
-    with pytest.raises(MeshError, match=r"mesh.inserter: found 'fill' with periodic surfaces; allowed is 'cad'"):
+    with pytest.raises(MeshError, match=r"mesh.inserter: found 'fill' with periodic surfaces; allowed is .cad."):
         Inserter("fill").chosen([ball(0.15)], domain)
     assert Inserter().chosen([ball(0.15)], domain) == "cad"
+
+
+@pytest.mark.parametrize("x", [0.1, 0.9])
+def test_a_body_that_touches_a_periodic_surface_has_a_mesh(x: float) -> None:
+    bodies = [
+        {"type": "sphere", "radius": 0.1, "density": 1.0, "position": [x, 0.5]},
+        {"type": "ellipsoid", "semi_axes": [0.1, 0.05], "density": 1.0, "position": [0.6, 0.6], "angle": 0.3},
+    ]
+    cells = {"size": 0.15, "size_body": 0.05, "cells_per_gap": 1, "refinements": 1}
+    domain = {"lower": [0.0, 0.0], "upper": [1.0, 1.0]}
+    mesh = Simulation(channel(body=bodies, domain=domain, mesh=cells)).state.mesh
+    assert cell_quality(mesh.points, mesh.cells).min() > 0.25
+    assert np.ptp(mesh.points[:, 0]) > 1.0  # cut open elsewhere, not straight
+
+
+def test_a_body_of_facets_is_refused_before_any_mesh_is_made() -> None:
+    square = {"type": "polygon", "points": [[0.0, 0.0], [0.2, 0.0], [0.2, 0.2]], "density": 1.0, "position": [0.6, 0.6]}
+    with pytest.raises(SceneError, match=r"mesh.inserter: found body.0 made of facets with periodic surfaces; allowed"):
+        build_system(channel(body=[square]))
 
 
 def test_no_periodic_surface_repels() -> None:

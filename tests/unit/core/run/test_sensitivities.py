@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scenes import dry_tables, wet_tables
 
-from rigidfluid.api import SceneError, Simulation, load_results, run, scene_from_dict
+from rigidfluid.api import SceneError, SceneErrors, Simulation, load_results, run, scene_from_dict
 from rigidfluid.checks.report import check
 from rigidfluid.core.scene.overrides import assign
 from rigidfluid.taylor_hood.sparse_backend import SparseBackend
@@ -230,6 +230,19 @@ def test_keys_without_a_derivative_are_refused(key: str, words: str) -> None:
         started(wet(DISK), key)
     with pytest.raises(SceneError, match=words):
         check(scene_from_dict(wet(DISK, output={"every": 1.0, "sensitivities": [key]})))
+
+
+def test_all_keys_without_a_derivative_are_told_at_once() -> None:
+    keys = ["fluid.viscositi", "body.3.density", "fluid.viscosity", "fluid.viscosity"]
+    with pytest.raises(SceneErrors) as told:
+        check(scene_from_dict(wet(DISK, output={"every": 1.0, "sensitivities": keys})))
+    assert [error.subject for error in told.value.single_errors] == [f"output.sensitivities.{n}" for n in (0, 1, 3)]
+    assert "Did you mean 'viscosity'?" in str(told.value)
+
+
+def test_a_lone_number_in_a_list_has_a_derivative() -> None:
+    table = started(wet(DISK | {"angular_velocity": 2.0}), "body.0.angular_velocity").history.sensitivities
+    assert table["w"][0] == pytest.approx(1.0)
 
 
 def test_backends_without_derivatives_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:

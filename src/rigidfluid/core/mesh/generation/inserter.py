@@ -36,8 +36,9 @@ class Inserter:
             found = f"'cad' with {of_facets[0]} made of facets"
             raise MeshError("mesh.inserter", found, "'fill' or 'level_set' for facets", "Leave the key out.")
         if domain.periodic and (of_facets or self.way not in ("cad", None)):
-            found = f"{self.way!r} with periodic surfaces" if self.way else f"periodic surfaces with {of_facets[0]}"
-            raise MeshError("mesh.inserter", found, "'cad', and shapes that have CAD shapes", "Choose other shapes.")
+            found = f"{self.way!r}" if self.way else f"{of_facets[0]} made of facets"
+            allowed = "'cad', and shapes that are not made of facets, as balls and ellipsoids"
+            raise MeshError("mesh.inserter", f"{found} with periodic surfaces", allowed, "Choose other shapes.")
         return self.way or ("fill" if of_facets else "cad")
 
 

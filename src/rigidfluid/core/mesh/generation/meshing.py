@@ -215,14 +215,15 @@ def fluid_shape(fluid_domain: FluidDomain, size_body: FloatArray, unit: float) -
 
 
 def images_in_box(fluid_domain: FluidDomain) -> tuple[IntArray, FloatArray]:
-    """All bodies, and the images of them that reach into the box around the domain: the body's number (c,) and the
-    centre (c, d) of each [length]."""
+    """All bodies, and the images of them that reach into the box around the domain or touch it, as one touches a
+    periodic surface: the body's number (c,) and the centre (c, d) of each [length]."""
     (lower, upper), position = fluid_domain.domain.extent, fluid_domain.pose.position
+    near = _TOUCHING * mesher_unit(fluid_domain.domain.size)
     radius = np.array([body.bounding_radius for body in fluid_domain.bodies])[:, None]
     numbers, centres = [np.arange(len(position))], [position]
     for way in fluid_domain.images[1:]:
         moved = position + way
-        reaches = np.flatnonzero(np.all((moved + radius > lower) & (moved - radius < upper), axis=1))
+        reaches = np.flatnonzero(np.all((moved + radius > lower - near) & (moved - radius < upper + near), axis=1))
         numbers.append(reaches)
         centres.append(moved[reaches])
     return np.concatenate(numbers), np.concatenate(centres)
