@@ -217,7 +217,6 @@ class SparseDiscretisation:
         return posed.solution(guess + correction)
 
     def residual(self, system: CoupledSystem) -> FloatArray:
-        """K times the guess less the load, for all of the fluid's test functions (unknowns of K,)."""
         everything = np.concatenate([(system.velocity - system.matrix.frame).ravel(), system.pressure])
         found = np.asarray(self._assembled(system.matrix).system_matrix @ everything)
         found[: system.load.size] -= system.load.ravel()

@@ -12,12 +12,12 @@ from rigidfluid.core.geometry.quadratic_cells import node_gradients
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.model.types import FluidState, Mesh
 from rigidfluid.taylor_hood.elements.numbering import Numbering
-from rigidfluid.taylor_hood.linear_solver.sparse import SparseDiscretisation
 from rigidfluid.taylor_hood.stepping.advance import Equations, coupled_system, step_matrix
 from rigidfluid.taylor_hood.stepping.refined_flow import InPlace, combined, on_finer, prolonged
 from rigidfluid.taylor_hood.system.boundary import pressure_load
 from rigidfluid.taylor_hood.system.coupled import CoupledSystem
 from rigidfluid.taylor_hood.system.dimensionless import Dimensionless
+from rigidfluid.taylor_hood.system.discretisation import TellsResidual
 
 _TOLERANCE = 1e-3
 """Relative residual of dual flows, and _SETTLED their change, that are let pass: they are weights alone [1]."""
@@ -55,7 +55,7 @@ def weighted_residuals(fine: InPlace, fluid: FluidState, coarse: Numbering, mesh
     """
     there, system = fine.target.numbering, _system(fine, fluid, coarse, mesh)
     assert isinstance(fine.target, Dimensionless)
-    assert isinstance(fine.target.inner, SparseDiscretisation)
+    assert isinstance(fine.target.inner, TellsResidual)
     of_velocity, of_pressure = np.split(fine.target.inner.residual(system), [system.velocity.size])
     of_velocity = of_velocity.reshape(system.velocity.shape)
     found = []
