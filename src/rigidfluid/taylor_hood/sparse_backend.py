@@ -7,15 +7,17 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar, Literal, final
 
+import numpy as np
 from pydantic import Field
 
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.fluid.material import Newtonian
 from rigidfluid.core.geometry.answers import refuse_other_rows
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.model.flow_error import RefinedFlow
 from rigidfluid.core.model.neighbour_step import NeighbourEnd, NeighbourPair, NeighbourStep
 from rigidfluid.core.model.part import PartOptions
-from rigidfluid.core.model.types import FluidState, Mesh, SolverCost
+from rigidfluid.core.model.types import FluidState, Mesh, SolverCost, Step
 from rigidfluid.taylor_hood.backend import TaylorHoodBackend, TaylorHoodOptions, on_mesh
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.linear_solver.predicted_cost import predicted_factors, predicted_run, predicted_unknowns
@@ -24,6 +26,7 @@ from rigidfluid.taylor_hood.linear_solver.solvers import Solvers
 if TYPE_CHECKING:
     from rigidfluid.taylor_hood.linear_solver.lagged_solver import LaggedSolver
     from rigidfluid.taylor_hood.linear_solver.sparse import Assembly, SparseDiscretisation
+    from rigidfluid.taylor_hood.stepping.refined_flow import InPlace
     from rigidfluid.taylor_hood.system.parts import Parts
 
 _DEAR = 1.0
@@ -105,6 +108,21 @@ class SparseBackend(TaylorHoodBackend):
         discretisation = self._discretisation(solved.mesh, solved.step.prescribed)
         asked = [(_with_images(plus), _with_images(minus)) for plus, minus in pairs]
         return neighbours(discretisation, _with_images(solved), found, asked, self.options.tolerance)
+
+    @final
+    def force_errors(self, flow: RefinedFlow, step: Step) -> FloatArray:
+        from rigidfluid.taylor_hood.stepping.force_errors import force_errors
+
+        return force_errors(self.held_in_place(flow, step), flow.fluid, self.numbering_of(flow.mesh), flow.mesh)
+
+    @final
+    def held_in_place(self, flow: RefinedFlow, step: Step) -> InPlace:
+        """The ``step`` on the finer mesh with all motions prescribed, beside the run's own factors."""
+        from rigidfluid.taylor_hood.stepping.refined_flow import InPlace
+
+        target = type(self)(self.options, self.problem)._steady_discretisation(flow.finer)
+        held = replace(step, points=flow.finer.geometry, prescribed=np.ones_like(step.prescribed))
+        return InPlace(target, flow.finer, on_mesh(held, flow.mesh), self.options.tolerance)
 
     @final
     def memory(self) -> FluidState:

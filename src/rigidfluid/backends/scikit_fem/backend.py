@@ -21,6 +21,7 @@ class ScikitFem(SparseBackend):
     name: ClassVar[str] = "scikit-fem"
     materials: ClassVar[tuple[type[Material], ...]] = (Newtonian, GeneralisedNewtonian)
     refinements: ClassVar[bool] = True
+    duals: ClassVar[bool] = True
     scalars: ClassVar[bool] = True
     requires: ClassVar[dict[str, str]] = {"skfem": "scikit-fem", "numba": "numba"}
 

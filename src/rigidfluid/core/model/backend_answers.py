@@ -87,6 +87,11 @@ def refinement(answer: Any, part: Any, flow: Any, step: Step, *_: Any) -> None:
     refuse_other_rows(answer.velocity, np.shape(answer.velocity), "velocity", shorter=True)
 
 
+def force_errors(answer: Any, part: Any, flow: Any, step: Step) -> None:
+    """Refuse what are no parts of all cells."""
+    refuse_other_rows(answer, (len(flow.mesh.cells),), "force_errors")
+
+
 def response(answer: Any, part: Any, fluid: Any, mesh: Any, step: Step, impulses: Any) -> None:
     """Refuse what are no responses to all impulses."""
     refuse_others(answer, Response)

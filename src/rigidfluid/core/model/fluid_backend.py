@@ -77,6 +77,8 @@ class FluidBackend(Part):
     """Tell whether it gives `neighbours` of a step, by which sensitivities are found."""
     refinements: ClassVar[bool] = False
     """Tell whether it tells by `refinement` what a finer mesh would change, for error bars."""
+    duals: ClassVar[bool] = False
+    """Tell whether it gives `force_errors`, by dual flows."""
     state_format: ClassVar[str | None] = None
     """Name of the format of its state. Backends of one format resume each other's runs, and by `joined` and `cut` those
     of other numbers of ranks; None where neither can be."""
@@ -204,6 +206,13 @@ class FluidBackend(Part):
         """Errors (o, nodes, d) of the velocity of the ``new`` flow that `transfer` has made of an ``old`` one, which
         had these ``errors``: on finer meshes, with what the transfer has changed; asked where there are
         `refinements`."""
+        raise NotImplementedError
+
+    @gives(backends.force_errors)
+    def force_errors(self, flow: RefinedFlow, step: Step) -> FloatArray:
+        """Parts of the mesh's cells (M,) in the error of the forces on all bodies in a ``step`` from a ``flow`` to
+        itself, whose sum is a bound of it [force]; asked of backends with `duals` alone. The ``finer`` mesh is that of
+        `refinement`. Raises StepRejected where there is no dual flow."""
         raise NotImplementedError
 
     @abstractmethod

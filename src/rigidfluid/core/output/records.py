@@ -214,7 +214,7 @@ def _error_rows(state: State, stamp: Row) -> Iterator[Row]:
     """A row where the mesh's error is known."""
     found = mesh_error(state)
     if found is not None:
-        yield (*stamp, found.total, found.dissipation, found.relative)
+        yield (*stamp, found.total, found.whole, found.relative)
 
 
 def _scalar_flux_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:

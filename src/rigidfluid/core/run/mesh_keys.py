@@ -15,8 +15,10 @@ from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.mesh.size.size_interface import SizeField
 from rigidfluid.core.mesh.size.wake import Wake
 from rigidfluid.core.model.domain import Domain
+from rigidfluid.core.model.mesh_error import ErrorOfFlow
 from rigidfluid.core.model.system import System
 from rigidfluid.core.run.clock import Clock
+from rigidfluid.core.run.force_errors import ErrorOfForces
 from rigidfluid.core.run.stopwatch import Stopwatch
 from rigidfluid.core.scene.mesh_tables import MeshTable
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
@@ -62,4 +64,5 @@ def updater_of(fluid: Fluid | NoFluid, system: System, clock: Clock, watch: Stop
     accuracy = accuracy_of(table, system.dimension)
     wanted = (*wakes_of(table, system.dimension), *fluid.size_fields, *([] if accuracy is None else [accuracy]))
     renewal = renewal_of(table, clock, accuracy)
-    return MeshUpdater(system, sizes_of(table, system.domain), renewal, wanted, inserter_of(table), watch)
+    estimate = ErrorOfForces(system, clock.time) if table.goal == "forces" else ErrorOfFlow()
+    return MeshUpdater(system, sizes_of(table, system.domain), renewal, wanted, inserter_of(table), watch, estimate)

@@ -36,7 +36,7 @@ def refinement_error(
     size = state.past.step
     before = None if _is_steady(system) else state.flow_error
     growth = np.zeros(3) if _is_steady(system) else _growth(before, time)
-    step = _step_in_place(system, state, time, growth[0])
+    step = step_in_place(system, state, time, growth[0])
     rate = None if before is None else _known_rate(before, growth, step)
 
     def mesh_velocity(twist: FloatArray) -> FloatArray:
@@ -75,7 +75,7 @@ def _known_rate(before: FlowError, growth: FloatArray, step: Step) -> ErrorRate:
     return ErrorRate(growth[0] * np.tensordot(weights, before.velocity, axes=1), load)
 
 
-def _step_in_place(system: System, state: State, time: float, grows: float) -> Step:
+def step_in_place(system: System, state: State, time: float, grows: float) -> Step:
     """A step from a state to itself, which would be its solution if the mesh had no errors; where it has, they grow
     with the weight ``grows`` [1/time]."""
     assert state.past is not None, "no step has been taken"

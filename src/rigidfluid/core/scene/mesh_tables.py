@@ -93,8 +93,13 @@ class MeshTable(Table):
         default=None,
         gt=0,
         lt=1,
-        description="Relative error of velocity gradients and pressure that the mesh may make; cells then follow its "
-        "estimate, as far as those that `size` and `size_body` ask for are coarser [1]",
+        description="Relative error of velocity gradients and pressure that the mesh may make, or of the bodies' "
+        "forces; cells then follow its estimate, as far as those that `size` and `size_body` ask for are coarser [1]",
+    )
+    goal: Literal["flow", "forces"] = Field(
+        default="flow",
+        description="What `accuracy` is of. `flow`: velocity gradients and pressure; `forces`: forces and torques on "
+        "the bodies, beside the root of the sum of the forces' squares",
     )
     most_cells: int = Field(
         default=50_000, ge=100, le=10**9, description="About how many cells `accuracy` asks for at most [1]"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rigidfluid.core.contact.path.detection import detection_by
+from rigidfluid.core.fluid.material import Newtonian
 from rigidfluid.core.nested.placing import check_orientation
 from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.spelling import suggestion
@@ -196,6 +197,20 @@ def _check_estimate(model: Model) -> None:
         _require("cell_errors", model, field, "an estimate of errors", "a backend that gives errors of cells")
 
 
+def _check_goal(model: Model) -> None:
+    mesh = model.fluid.mesh
+    if mesh is None or mesh.goal == "flow":
+        return
+    found = repr(mesh.goal)
+    if mesh.accuracy is None:
+        raise SceneError("mesh.goal", f"{found} without `accuracy`", "it beside an accuracy", "Add accuracy = 0.01.")
+    _require("duals", model, "mesh.goal", found, "a backend that gives errors of forces")
+    material = model.fluid.material
+    if not isinstance(material, Newtonian):
+        found = f"{found} with material {material.name!r}"
+        raise SceneError("mesh.goal", found, "a viscosity that does not vary", "Let the goal be 'flow'.")
+
+
 def _check_error_bars(model: Model) -> None:
     if model.output.error_bars:
         _require("refinements", model, "output.error_bars", "true", "a backend that compares meshes")
@@ -291,6 +306,7 @@ _QUESTIONS: tuple[Callable[[Model], None], ...] = (
     _check_probes,
     _check_stresslets,
     _check_estimate,
+    _check_goal,
     _check_sensitivities,
     _check_error_bars,
     check_laws,

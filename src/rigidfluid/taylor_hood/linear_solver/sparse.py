@@ -216,6 +216,12 @@ class SparseDiscretisation:
         correction, _ = solver.solve(operator, posed.residual(guess), enough, outdated, system.again)
         return posed.solution(guess + correction)
 
+    def residual(self, system: CoupledSystem) -> FloatArray:
+        everything = np.concatenate([(system.velocity - system.matrix.frame).ravel(), system.pressure])
+        found = np.asarray(self._assembled(system.matrix).system_matrix @ everything)
+        found[: system.load.size] -= system.load.ravel()
+        return found
+
     def neighbours(
         self, system: CoupledSystem, pairs: Sequence[tuple[CoupledSystem, CoupledSystem]], tolerance: float
     ) -> list[tuple[Solution, Solution]]:

@@ -90,7 +90,7 @@ def self_convected(place: InPlace, fluid: FluidState, follow: Callable[[Twist], 
         change, moved, whole = (_norm(target, mesh, each) for each in (changes[-1], velocity - start, velocity))
         if change <= _SETTLED * moved + _ROUNDING * tolerance * whole or target.problem.inert_density == 0.0:
             return advanced
-        attempt = {**advanced.fluid, "velocity": _combined(found, changes)}
+        attempt = {**advanced.fluid, "velocity": combined(found, changes)}
         before = fluid["points_previous"] + follow(advanced.twist) / step.derivative[2]
     raise StepRejected(
         "output.error_bars",
@@ -134,7 +134,7 @@ def on_finer(field: FloatArray, coarse: Numbering, fine: Numbering) -> FloatArra
     return found
 
 
-def _combined(found: list[FloatArray], changes: list[FloatArray]) -> FloatArray:
+def combined(found: list[FloatArray], changes: list[FloatArray]) -> FloatArray:
     """Combination (nodes, d) of the velocities ``found`` whose ``changes``, combined alike, are least."""
     differences = np.diff([change.ravel() for change in changes], axis=0)
     if not len(differences):

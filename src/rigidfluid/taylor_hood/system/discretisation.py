@@ -87,6 +87,14 @@ class Linearisable(Protocol):
         StepRejected."""
 
 
+@runtime_checkable
+class TellsResidual(Protocol):
+    """Discretisation that tells by how much a guess misses the fluid's equations."""
+
+    def residual(self, system: CoupledSystem) -> FloatArray:
+        """K times the guess less the load, for all of the fluid's test functions (unknowns of K,)."""
+
+
 def kinetic_energy(discretisation: Discretisation, points: FloatArray, velocity: FloatArray) -> float:
     """½ ρ ∫ |u|² [energy]; zero in Stokes flow, which has no inertia."""
     problem, ranks = discretisation.problem, discretisation.surfaces.ranks

@@ -30,7 +30,7 @@ from rigidfluid.core.mesh.size.equidistribution import Equidistribution
 from rigidfluid.core.mesh.size.size_field import Sizes, wanted_size
 from rigidfluid.core.mesh.size.size_interface import SizeField, with_fields, with_fields_at_rest
 from rigidfluid.core.model.flow_error import FlowError, RefinedFlow
-from rigidfluid.core.model.mesh_error import mesh_error
+from rigidfluid.core.model.mesh_error import ErrorEstimate, ErrorOfFlow
 from rigidfluid.core.model.replaceable import Replaceable
 from rigidfluid.core.model.state import FailedRemesh, Reference, State
 from rigidfluid.core.model.system import System
@@ -66,7 +66,8 @@ class MeshUpdater:
 
     Each mesh has the cells that ``fields`` ask for, by the flow on the mesh before; the first one, which ``inserter``
     makes, by a fluid and bodies at rest. All others are made on the conditions of ``renewal``. ``watch`` times a stage
-    by its name; the carrying over of the fluid is the stage "transfer".
+    by its name; the carrying over of the fluid is the stage "transfer". An accuracy is of the error by
+    ``estimate``, of the flow if not given.
     """
 
     needs_remesh = Replaceable()
@@ -79,6 +80,7 @@ class MeshUpdater:
         fields: Sequence[SizeField] = (),
         inserter: Inserter = BY_SHAPE,
         watch: Callable[[str], AbstractContextManager[None]] = lambda _: nullcontext(),
+        estimate: ErrorEstimate | None = None,
     ) -> None:
         self.system = system
         self._sizes = sizes
@@ -86,6 +88,7 @@ class MeshUpdater:
         self._fields = tuple(fields)
         self._inserter = inserter
         self._watch = watch
+        self._estimate = ErrorOfFlow() if estimate is None else estimate
         self.needs_remesh = self.is_worn
         self._motion: tuple[MeshMotion, CurvedCells]
         self._reference: Reference | None = None
@@ -194,7 +197,7 @@ class MeshUpdater:
         """Flow of a ``state`` for size ``fields``, on the root; None without any, and on the other ranks."""
         if not fields:
             return None
-        return flow_on(self.system.backend, state.fluid, state.mesh, state.twist, mesh_error(state))
+        return flow_on(self.system.backend, state.fluid, state.mesh, state.twist, self._estimate.error(state))
 
     def _sizes_by(self, fields: Sequence[SizeField], around: FluidDomain, flow: Flow | None) -> Sizes:
         """Sizes with what ``fields`` ask for in their ``flow``."""
@@ -238,9 +241,11 @@ class MeshUpdater:
     def _is_inaccurate(self, state: State) -> bool:
         """Tell whether other cells are worth it for the accuracy, as large as all other sizes let them be."""
         accuracy = self._renewal.accuracy
-        error = None if accuracy is None else mesh_error(state)
-        age = (state.tick - state.reference.tick) / self._renewal.pause
-        if accuracy is None or error is None or not accuracy.is_due(error, age):
+        steps, age = (tick / self._renewal.pause for tick in (state.tick, state.tick - state.reference.tick))
+        if accuracy is None or not self._estimate.is_asked(steps, age):
+            return False
+        error = self._estimate.error(state)
+        if error is None or not accuracy.is_due(error, age):
             return False
         mesh, fields = state.mesh, [field for field in self._fields if field is not accuracy]
         around = fluid_domain_at(self.system, mesh.images_of(state.pose))

@@ -13,17 +13,18 @@ from rigidfluid.core.model.mesh_error import EstimatedError
 from rigidfluid.core.model.part import PartOptions
 
 _ORDER = 2.0
-"""Order of the error in the edge length."""
+"""Half of the order in the edge length of what cells add up to: of the error of velocity gradients and pressure."""
 
 _AIM = 0.7
-"""Error aimed at over the one allowed: the mesher leaves edges that are too long, and a mesh is to last while the flow
-changes."""
+"""Error aimed at over the one allowed, of a force the root of that: the mesher leaves edges that are too long, and a
+mesh is to last while the flow changes."""
 
 _MOST = 2.0
 """Greatest change of an edge's length from mesh to mesh, up and down: residuals of coarse cells tell no more."""
 
 _WORTH, _WORTH_SOON = 1.25, 2.0
-"""Ratio of errors, or of numbers of cells, from which another mesh is worth it; and of errors while a mesh is new."""
+"""Ratio of errors, of a force of their roots, or of numbers of cells, from which another mesh is worth it; and of
+errors while a mesh is new."""
 
 _SETTLED, _LASTING = 4.0, 20.0
 """Whole steps before a mesh is replaced, as a transferred flow errs more at first, and while it is new: what the mesher
@@ -37,10 +38,11 @@ _ON_BODIES = 0.1
 
 
 class Equidistribution(SizeField):
-    r"""Size field of `mesh.accuracy`: cells of equal errors, as few as have the relative error ``accuracy`` [1]
-    together, and about ``most_cells`` at most.
+    r"""Size field of `mesh.accuracy`: cells with equal parts of the error, as few as have the relative error
+    ``accuracy`` [1] together, and about ``most_cells`` at most.
 
-    With errors η_K² ∝ h^(2p+d) of cells, p = 2, the fewest cells of a given sum Σ η_K² have the same error t each:
+    With parts η_K² ∝ h^(2p+d) of cells, p = 2, be they squared errors of the flow or errors of a force, the fewest
+    cells of a given sum Σ η_K² have the same part t each:
 
     h = h_K (t/η_K²)^(1/(2p+d)), t = (target/S)^((2p+d)/2p), S = Σ (η_K²)^(d/(2p+d))
 
@@ -87,6 +89,6 @@ class Equidistribution(SizeField):
         d, order = self.dimension, 2.0 * _ORDER + self.dimension
         relative, most = error.cells / error.total, _MOST**order
         weight = float(np.sum(relative ** (d / order)))
-        target = (_AIM * self.accuracy / error.relative) ** 2
+        target = _AIM**2 * (self.accuracy / error.relative) ** error.power
         each = max((target / weight) ** (order / (2.0 * _ORDER)), (weight / self.most_cells) ** (order / d))
         return np.asarray((each / np.clip(relative, each / most, each * most)) ** (1.0 / order))
