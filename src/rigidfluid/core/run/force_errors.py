@@ -12,7 +12,7 @@ from rigidfluid.core.model.flow_error import RefinedFlow
 from rigidfluid.core.model.mesh_error import ErrorEstimate, EstimatedError
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.run.mesh_error import step_in_place
+from rigidfluid.core.run.refinement_error import step_in_place
 from rigidfluid.errors import MeshError, StepRejected
 
 _FIRST, _EVERY = 4, 20
