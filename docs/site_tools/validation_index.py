@@ -68,6 +68,7 @@ SUBJECTS = {
         "enter_and_leave": "Ten bodies enter a box of fluid and leave it: account of energy and area",
         "seeding": "Seeded swarms: fraction, gaps, radial distribution and cost",
         "mesh_estimate": "Cells that follow an estimate of their error: cells to an error compared with graded meshes",
+        "mesh_for_forces": "Cells that follow the error of forces: cells to an error compared with graded meshes",
         "insertion": "Bodies inserted into domains: cell quality and failures",
         "detectors": "Gaps among ellipses: error of each detector against its time",
         "distance_field": "Distance to a circle over a mesh: orders of convergence",

@@ -16,7 +16,7 @@ class EstimatedError:
     """Parts ``cells`` (M,) of a mesh's cells in an error that is relative to a ``whole`` of the same unit: with a
     ``power`` of 2 [1] their sum is the square of the error.
 
-    Of the flow: squared errors in the norm of dissipation, and the dissipation [energy/time].
+    Parts of the flow are squared errors in the norm of dissipation, and the whole is the dissipation [energy/time].
     """
 
     cells: FloatArray

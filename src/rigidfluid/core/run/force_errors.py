@@ -29,7 +29,7 @@ class ErrorOfForces(ErrorEstimate):
         self._latest: tuple[State, EstimatedError | None] | None = None
 
     def is_asked(self, steps: float, age: float) -> bool:
-        """At whole steps: once a mesh has settled, and later now and then."""
+        """Tell so at whole steps alone: once when a mesh has settled, and later now and then."""
         return steps == int(steps) and (_FIRST <= age < _FIRST + 1 or (age > _FIRST and steps % _EVERY == 0))
 
     def error(self, state: State) -> EstimatedError | None:

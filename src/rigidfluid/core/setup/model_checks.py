@@ -198,11 +198,10 @@ def _check_estimate(model: Model) -> None:
 
 
 def _check_goal(model: Model) -> None:
-    mesh = model.fluid.mesh
-    if mesh is None or mesh.goal == "flow":
+    if not isinstance(model.fluid, Fluid) or model.fluid.mesh.goal == "flow":
         return
-    found = repr(mesh.goal)
-    if mesh.accuracy is None:
+    found = repr(model.fluid.mesh.goal)
+    if model.fluid.mesh.accuracy is None:
         raise SceneError("mesh.goal", f"{found} without `accuracy`", "it beside an accuracy", "Add accuracy = 0.01.")
     _require("duals", model, "mesh.goal", found, "a backend that gives errors of forces")
     material = model.fluid.material
