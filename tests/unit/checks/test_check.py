@@ -343,6 +343,7 @@ def test_a_face_that_does_not_repel() -> None:
     finding = only("open-face", boundary=[{"on": "bottom", "type": "slip"}])
     assert (finding.grade, finding.subject) == ("warning", ("body0", "bottom"))
     assert not found("open-face", boundary=[{"on": "left", "type": "slip"}])
+    assert not found("open-face", boundary=[{"on": face, "type": "periodic"} for face in ("bottom", "top")])
     assert not found("rest", boundary=[{"on": "bottom", "type": "slip"}])
 
 
