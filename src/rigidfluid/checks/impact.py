@@ -44,7 +44,8 @@ def _finding(design: DesignContacts, row: int, share: float, stops_two: bool, ga
     if share >= 1.0:
         text = f"{fast} is stopped at a gap of {figure(gap)}, if nothing else brakes it"
         return Finding("note", QUESTION, design.names(row), text, found=found)
-    text = f"{fast}: up to contact the law takes up only {figure(share)} of the impact"
+    told = figure(min(share, 0.999))  # not 1, which would be enough
+    text = f"{fast}: up to contact the law takes up only {told} of the impact"
     enough, remedy = strength_remedy(design, share)
     braked = design.system.has_fluid or design.law.dissipative
     if braked:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Container, Iterator, Sequence
+from itertools import chain
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from rigidfluid.checks.finding import Finding, Grade, figure
 from rigidfluid.core.contact.laws.strength import chosen_strengths
 from rigidfluid.core.contact.pairs.representative_contacts import body_classes, facing_normal, free
 from rigidfluid.core.geometry.surface import Surface
+from rigidfluid.core.mesh.adaptation.crossing import bodies_cross
 from rigidfluid.core.model.interactions import Interaction
 from rigidfluid.core.model.system import System
 
@@ -45,9 +47,12 @@ def _lawless_findings(system: System) -> Iterator[Finding]:
 
 def open_face_findings(system: System, ends: Container[str | None] = ()) -> Iterator[Finding]:
     """Find surfaces that a weight drives bodies to but that are no walls, and do not repel; a warning for each that is
-    not at one of the ``ends``, where bodies leave."""
+    not at one of the ``ends``, where bodies leave, and that they do not cross as a periodic one."""
     solid = {wall.name for wall in system.walls}
-    for piece in system.domain.pieces:
+    crossed = set(chain(*system.domain.periodic)) if bodies_cross(system) else set()
+    for number, piece in enumerate(system.domain.pieces):
+        if number in crossed:
+            continue
         name, moving = piece.name, (kind[0] for kind in body_classes(system) if free(system, kind))
         driven = [body for body in moving if _drives(system, body, piece.shape)]
         if driven and name not in solid and name not in ends:

@@ -148,7 +148,7 @@ def test_parts_of_one_body_are_no_pair() -> None:
 # impact
 
 
-@pytest.mark.parametrize(("share", "grade"), [(1.01, "note"), (0.99, "error")])
+@pytest.mark.parametrize(("share", "grade"), [(1.01, "note"), (0.99, "error"), (0.9999, "error")])
 def test_impact_against_what_the_law_stores(share: float, grade: str) -> None:
     epsilon = RANGE**3 / (3 * share * IMPACT)
     finding = only("impact", contact={"epsilon": epsilon})
@@ -157,6 +157,7 @@ def test_impact_against_what_the_law_stores(share: float, grade: str) -> None:
     assert finding.found["impact_speed"] == pytest.approx(np.sqrt(2 * GRAVITY * (HEIGHT - RANGE)))
     if grade == "error":
         assert finding.enough["epsilon_wall"] == pytest.approx(epsilon * share)
+        assert f"takes up only {min(share, 0.999)} of the impact" in finding.text
 
 
 def test_impact_ends_where_the_energy_is_stored() -> None:
@@ -343,6 +344,7 @@ def test_a_face_that_does_not_repel() -> None:
     finding = only("open-face", boundary=[{"on": "bottom", "type": "slip"}])
     assert (finding.grade, finding.subject) == ("warning", ("body0", "bottom"))
     assert not found("open-face", boundary=[{"on": "left", "type": "slip"}])
+    assert not found("open-face", boundary=[{"on": face, "type": "periodic"} for face in ("bottom", "top")])
     assert not found("rest", boundary=[{"on": "bottom", "type": "slip"}])
 
 

@@ -74,7 +74,7 @@ class Expression:
             found = np.broadcast_to(np.asarray(self._value(names), dtype=float), len(points))
         lost = np.flatnonzero(~(np.abs(found) <= LARGEST))
         if lost.size:
-            where = f"at time {time:g} and point {points[lost[0]].tolist()}"
+            where = f"at time {time:g}" + (f" and point {points[lost[0]].tolist()}" if points.shape[1] else "")
             remedy = "Write it so that it has a value there, as with max(…) or where(…)."
             allowed = f"finite values, up to {LARGEST:g}"
             raise SceneError(self.at, f"{found[lost[0]]} from {self.source!r} {where}", allowed, remedy)

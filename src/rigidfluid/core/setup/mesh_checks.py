@@ -26,6 +26,9 @@ def check_mesh_table(mesh: MeshTable, time: TimeTable) -> None:
     """Refuse what contradicts itself in the tables alone; raises SceneError at the first contradiction."""
     if mesh.size_body > mesh.size:
         raise SceneError("mesh.size_body", mesh.size_body, f"at most mesh.size = {mesh.size}", "Swap or correct them.")
+    if mesh.accuracy is None and mesh.most_cells != type(mesh).model_fields["most_cells"].default:
+        remedy = "Add accuracy = 0.05, or leave it out."
+        raise SceneError("mesh.most_cells", mesh.most_cells, "one beside mesh.accuracy, which reads it", remedy)
     if mesh.remesh_every is not None and mesh.remesh_every < time.step:
         allowed = f"at least time.step = {time.step}"
         raise SceneError("mesh.remesh_every", mesh.remesh_every, allowed, "Re-mesh less often.")

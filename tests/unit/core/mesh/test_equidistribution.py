@@ -224,3 +224,8 @@ def test_auto_needs_an_accuracy() -> None:
     for given in ({}, {"accuracy": None}):
         with pytest.raises(SceneError, match=refused):
             scene_from_dict({"scene": {"name": "held", "dimension": 2}, "mesh": {"size": "auto"} | given})
+
+
+def test_a_number_of_cells_needs_an_accuracy() -> None:
+    with pytest.raises(SceneError, match=r"mesh.most_cells: found 200; allowed is one beside mesh.accuracy"):
+        model_of(channel(size=0.25, size_body=0.05, accuracy=None, most_cells=200))
