@@ -45,12 +45,12 @@ def weighted_residuals(fine: InPlace, fluid: FluidState, coarse: Numbering, mesh
     -ρ(u - w)·∇z + ρ(∇u)ᵀz - ∇·σ(z, r) = 0, ∇·z = 0, with ∂z/∂t omitted
 
     The error is the residual R of u, p for what is left of z and r when they are interpolated on the coarse cells, all
-    at halved edges. With the hats φ_i of the coarse vertices, whose sum is one, η_ij = R(u, p; φ_i (z - Iz), φ_i (r -
+    at halved edges. With the linear test functions φ_i of the coarse vertices, whose sum is one, η_ij = R(u, p; φ_i (z - Iz), φ_i (r -
     Ir)).
 
     Notes
     -----
-    R. Becker and R. Rannacher, Acta Numerica 10, 1 (2001); parts by hats: T. Richter and T. Wick, J. Comput. Appl.
+    R. Becker and R. Rannacher, Acta Numerica 10, 1 (2001); parts by vertices: T. Richter and T. Wick, J. Comput. Appl.
     Math. 279, 192 (2015).
     """
     there, system = fine.target.numbering, _system(fine, fluid, coarse, mesh)
@@ -133,7 +133,7 @@ def _mean_gradient(numbering: Numbering, points: FloatArray, velocity: FloatArra
 
 
 def _shared(values: FloatArray, numbering: Numbering) -> FloatArray:
-    """Σ of ``values`` (nodes,) times the hat of each vertex (vertices,)."""
+    """Σ of ``values`` (nodes,) times the linear test function of each vertex (vertices,)."""
     first, found = numbering.vertices, values[: numbering.vertices].copy()
     for end in numbering.edges.T:
         found += np.bincount(end, 0.5 * values[first:], minlength=first)
