@@ -45,8 +45,8 @@ def weighted_residuals(fine: InPlace, fluid: FluidState, coarse: Numbering, mesh
     -ρ(u - w)·∇z + ρ(∇u)ᵀz - ∇·σ(z, r) = 0, ∇·z = 0, with ∂z/∂t omitted
 
     The error is the residual R of u, p for what is left of z and r when they are interpolated on the coarse cells, all
-    at halved edges. With the linear test functions φ_i of the coarse vertices, whose sum is one, η_ij = R(u, p; φ_i (z - Iz), φ_i (r -
-    Ir)).
+    at halved edges. With the linear test functions φ_i of the coarse vertices, whose sum is one,
+    η_ij = R(u, p; φ_i (z - Iz), φ_i (r - Ir)).
 
     Notes
     -----
