@@ -249,7 +249,7 @@ def _bad_outside_films(mesh: Mesh, fluid_domain: FluidDomain) -> IntArray:
     bad = np.flatnonzero(cell_quality(mesh.points, mesh.cells) <= GOOD_QUALITY)
     width = fluid_domain.gap_widths(mesh.points[mesh.cells[bad]].mean(axis=1))
     longest = edge_lengths(mesh.points, mesh.cells[bad]).max(axis=1)
-    return bad[width > FLAT_IN_FILM * longest]
+    return np.asarray(bad[width > FLAT_IN_FILM * longest])
 
 
 def longest_relative_edge(mesh: Mesh, size_at: Callable[[FloatArray], FloatArray]) -> float:
