@@ -82,7 +82,7 @@ class FluidScheme(ABC):
             sight = system.detection.look_ahead(ExtrapolatedContacts(near, state.pose), dynamics, size)
             path = SubstepPath(system, system.law, dynamics, size, state.springs).advance(sight)
             path = replace(path, friction=dynamics.friction_loss)
-        return self._with_friction(replace(path, coupling=coupling), coupling.model, state, size)
+        return replace(self._with_friction(path), coupling=coupling)
 
     def prepare(self, step: Step, state: State, path: BodyStep) -> Step:
         """Add the correction of the load, in place, and the impulses that correct the advecting velocity."""
@@ -139,9 +139,8 @@ class FluidScheme(ABC):
         others are constant."""
 
     @abstractmethod
-    def _with_friction(self, path: BodyStep, model: ReducedModel, state: State, size: float) -> BodyStep:
-        """The path from ``state`` with its friction in the field from which the ledger takes it, and with the energy
-        that the fluid's step of this ``size`` [time] would create on it."""
+    def _with_friction(self, path: BodyStep) -> BodyStep:
+        """The path with its friction in the field from which the ledger takes it."""
 
     @abstractmethod
     def _with_turning(self, step: Step, state: State, path: BodyStep) -> Step:

@@ -13,7 +13,6 @@ from rigidfluid.core.coupling.convection import turning
 from rigidfluid.core.coupling.expected_load import expected_load, load_before
 from rigidfluid.core.coupling.fluid_scheme import FluidScheme, near_motions
 from rigidfluid.core.coupling.stirring import impact_tick
-from rigidfluid.core.coupling.turns import created_in_turn
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.dynamics import BodyDynamics
@@ -59,9 +58,8 @@ class NavierStokesScheme(FluidScheme):
             return np.broadcast_to(slow[:, None], shape)
         return np.ones(shape, dtype=bool)
 
-    def _with_friction(self, path: BodyStep, model: ReducedModel, state: State, size: float) -> BodyStep:
-        change = model.components(flat(path.motions.twist) - flat(state.motions.twist))
-        return replace(path, created=created_in_turn(model, change, path.friction, size))
+    def _with_friction(self, path: BodyStep) -> BodyStep:
+        return path
 
     def _with_turning(self, step: Step, state: State, path: BodyStep) -> Step:
         return replace(step, turning=turning(self._system, state, path, step))

@@ -40,7 +40,7 @@ class StokesScheme(FluidScheme):
         """All, in all steps."""
         return np.ones_like(flat(state.motions.contact), dtype=bool)
 
-    def _with_friction(self, path: BodyStep, model: ReducedModel, state: State, size: float) -> BodyStep:
+    def _with_friction(self, path: BodyStep) -> BodyStep:
         """The path with its friction as ``drag_loss``: it is known for certain."""
         return replace(path, friction=0.0, drag_loss=path.friction)
 

@@ -12,9 +12,6 @@ TOLERATED_FRICTION = 3e-5
 The step loses several times as much: in the fluid an impact makes one viscous layer as thick as the whole step allows.
 """
 
-TOLERATED_CREATED = 1e-4
-"""Greatest energy that a step may create as contacts turn bodies, over the energy put in since the start [1]."""
-
 MOST_HALVINGS = 5
 """Number of times at most that an impact, which may last a millionth of a step, halves it."""
 
@@ -29,14 +26,6 @@ def is_unresolved(state: State, path: BodyStep, level: int) -> bool:
     """
     level_before = 0 if state.estimate is None else state.estimate.level
     return level < level_before + MOST_HALVINGS and path.friction > TOLERATED_FRICTION * state.ledger.put_in
-
-
-def is_turned_coarsely(state: State, path: BodyStep) -> bool:
-    """Tell whether a step is to be halved, for the energy that it would create as contacts turn bodies on its ``path``.
-
-    The energy falls with the square of the step, and so this ends by itself.
-    """
-    return path.created > TOLERATED_CREATED * state.ledger.put_in
 
 
 def level_after_impact(state: State, clock: Clock, level: int) -> int:

@@ -23,7 +23,7 @@ from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.corners import level_to_corner, restarted
 from rigidfluid.core.run.energy_causes import with_cause
 from rigidfluid.core.run.error_estimate import estimate_error
-from rigidfluid.core.run.impacts import is_turned_coarsely, is_unresolved, level_after_impact
+from rigidfluid.core.run.impacts import is_unresolved, level_after_impact
 from rigidfluid.core.run.prescribed_path import with_prescribed
 from rigidfluid.core.run.process import give_back_memory
 from rigidfluid.core.run.step import Tools, attempt
@@ -192,8 +192,7 @@ class Stepper:
                 path = self._path(state, level)
             except StepRejected:
                 break
-            coarse = is_unresolved(state, path, level) or is_turned_coarsely(state, path)
-            if not (coarse or self._changes_gaps_too_fast(state, path.pose)):
+            if not (is_unresolved(state, path, level) or self._changes_gaps_too_fast(state, path.pose)):
                 return level, path
             level += 1
         return level, None

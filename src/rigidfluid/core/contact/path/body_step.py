@@ -26,8 +26,7 @@ class BodyStep:
 
     In a fluid ``friction`` is the energy that drag takes in substeps, unresolved by the fluid solves, and ``coupling``
     the one with which the bodies were followed, None where nothing can touch. Without inertia of the fluid that energy
-    is known for certain: it is ``drag_loss`` then, and ``friction`` zero. ``created`` is about the energy that the
-    fluid's time scheme creates as contacts turn the bodies, zero where it does not resolve that [energy].
+    is known for certain: it is ``drag_loss`` then, and ``friction`` zero.
 
     ``springs``: those along the surfaces of contacts at the end, None where there are none.
     """
@@ -44,7 +43,6 @@ class BodyStep:
     coupling: Coupling | None = None
     drag_loss: float = 0.0
     springs: TangentialSprings | None = None
-    created: float = 0.0
 
 
 def arrived(dynamics: BodyDynamics, impulse: Wrench, dissipated: float, actuator_work: float, count: int) -> BodyStep:
