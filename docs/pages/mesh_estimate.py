@@ -270,10 +270,10 @@ graded ones suit a single round body so well that up to some 2,500 of them no is
 fewer than half, as the column `fewest` below tells. Those by accuracy are near the fewest. Around a square, whose
 corners no grading by the distance knows of, they are less than a third.
 
-They are not made for drag: its error goes with the square of that error, weighted by where the flow acts on the body,
-and through zero as cells change. Graded meshes do as well until it is 1e-4 of the cylinder's drag, and about as well
-for the square. In the first steps of the fall all accuracies have the same coarse mesh, which leaves an error of 4e-5
-in the speed.
+They are not made for drag, as [cells for forces](mesh_for_forces.md) are: its error goes with the square of that error,
+weighted by where the flow acts on the body, and through zero as cells change. Graded meshes do as well until it is 1e-4
+of the cylinder's drag, and about as well for the square. In the first steps of the fall all accuracies have the same
+coarse mesh, which leaves an error of 4e-5 in the speed.
 
 Greater upper bounds do not help: with `growth = 0.5` the first mesh of the cylinder has 579 cells in place of 799, and
 the last ones have 830 with an estimate of .079, 1,459 with .043 and 2,780 with .020.
