@@ -8,13 +8,13 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 from facet_shapes import CUBE, TRIANGLES, binary_stl
-from rigidfluid.core.run.mesh_error import step_in_place
 
 from rigidfluid.api import FloatArray, Simulation, scene_from_dict
 from rigidfluid.backends.scikit_fem import ScikitFem
 from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
 from rigidfluid.core.mesh.generation.refined_mesh import refined_mesh
 from rigidfluid.core.model.flow_error import RefinedFlow
+from rigidfluid.core.run.refinement_error import step_in_place
 from rigidfluid.taylor_hood.stepping.force_errors import weighted_residuals
 
 
