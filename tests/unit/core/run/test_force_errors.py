@@ -72,6 +72,7 @@ def test_nothing_is_told_before_the_first_step() -> None:
             {"fluid": {"density": 1.0, "material": MATERIAL}, "mesh": AUTO | {"accuracy": 0.01}},
             "'forces' with material 'bingham'",
         ),
+        ({"body": []}, "'forces' without a body"),
     ],
 )
 def test_goals_that_nothing_follows_are_refused(tables: dict[str, Any], found: str) -> None:
