@@ -66,7 +66,7 @@ POLYGON = {"name": "blunt", "type": "polygon", "points": BLUNT, "density": 1.0, 
 
 
 def test_residuals_add_up_to_what_halved_edges_change_of_forces_and_torques_in_creeping_flow() -> None:
-    """With edges that stay straight, but for the tolerance of the dual flows; arms are from the centre of mass."""
+    """Leave edges straight, so that the tolerance of dual flows alone is left; arms are from the centre of mass."""
     seen = found(2, body=[POLYGON], **CREEPING)
     assert seen.residuals.sum(axis=1)[:2] == pytest.approx(-seen.change[:2], rel=1e-3)
     torque, turned = seen.change[2] * 0.2, -seen.residuals[2].sum()
@@ -101,7 +101,7 @@ def test_residuals_add_up_to_the_change_in_three_dimensions(tmp_path: Path) -> N
 
 
 def test_residuals_follow_the_change_with_convection() -> None:
-    """At a Reynolds number of 40 and on cells that are fine enough for it."""
+    """Take a Reynolds number of 40, and cells that are fine enough for it."""
     seen = found(2, body=[POLYGON], mesh={"size": 0.1, "size_body": 0.03, "order": 1})
     assert seen.residuals.sum(axis=1)[0] == pytest.approx(-seen.change[0], rel=0.3)
 

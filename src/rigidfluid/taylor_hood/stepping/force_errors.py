@@ -57,13 +57,13 @@ def weighted_residuals(fine: InPlace, fluid: FluidState, coarse: Numbering, mesh
     there, system = fine.target.numbering, _system(fine, fluid, coarse, mesh)
     assert isinstance(fine.target, Dimensionless)
     assert isinstance(fine.target.inner, TellsResidual)
-    of_velocity, of_pressure = np.split(fine.target.inner.residual(system), [system.velocity.size])
-    of_velocity = of_velocity.reshape(system.velocity.shape)
+    missed, divergence = np.split(fine.target.inner.residual(system), [system.velocity.size])
+    missed = missed.reshape(system.velocity.shape)
     found = []
     for velocity, pressure, jump in _dual_flows(fine, system):
         left = velocity - on_finer(velocity[: coarse.nodes], coarse, there)
         left_pressure = pressure - coarse.interpolate_to_nodes((pressure - jump)[: coarse.vertices])
-        weighted = _shared(np.sum(of_velocity * left, axis=1), there) + of_pressure * left_pressure
+        weighted = _shared(np.sum(missed * left, axis=1), there) + divergence * left_pressure
         found.append(_shared(weighted, coarse))
     return np.array(found)
 
