@@ -8,13 +8,13 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 from facet_shapes import CUBE, TRIANGLES, binary_stl
-from rigidfluid.core.run.mesh_error import step_in_place
 
 from rigidfluid.api import FloatArray, Simulation, scene_from_dict
 from rigidfluid.backends.scikit_fem import ScikitFem
 from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
 from rigidfluid.core.mesh.generation.refined_mesh import refined_mesh
 from rigidfluid.core.model.flow_error import RefinedFlow
+from rigidfluid.core.run.refinement_error import step_in_place
 from rigidfluid.taylor_hood.stepping.force_errors import weighted_residuals
 
 
@@ -66,11 +66,22 @@ POLYGON = {"name": "blunt", "type": "polygon", "points": BLUNT, "density": 1.0, 
 
 
 def test_residuals_add_up_to_what_halved_edges_change_of_forces_and_torques_in_creeping_flow() -> None:
-    """With edges that stay straight, but for the tolerance of the dual flows; arms are from the centre of mass."""
+    """Leave edges straight, so that the tolerance of dual flows alone is left; arms are from the centre of mass."""
     seen = found(2, body=[POLYGON], **CREEPING)
     assert seen.residuals.sum(axis=1)[:2] == pytest.approx(-seen.change[:2], rel=1e-3)
     torque, turned = seen.change[2] * 0.2, -seen.residuals[2].sum()
     assert torque / turned == pytest.approx(0.19, abs=0.01)  # the bounding radius
+
+
+@pytest.mark.parametrize("side", ["slip", "wall"])
+def test_residuals_add_up_to_the_change_where_a_flux_is_held(side: str) -> None:
+    """Take a disk on curved cells: between slip walls a given drop of pressure gives the force without any error."""
+    seams: list[dict[str, Any]] = [{"on": "left", "type": "periodic", "flux": 1.0}, {"on": "right", "type": "periodic"}]
+    walls = [{"on": name, "type": side} for name in ("bottom", "top")]
+    seen = found(2, boundary=[*seams, *walls], mesh={"size": 0.25, "size_body": 0.1}, **CREEPING)
+    assert abs(seen.change[0]) > 1e-4
+    assert seen.residuals.sum(axis=1)[0] == pytest.approx(-seen.change[0], rel=0.1)
+    assert np.linalg.norm(seen.change[:2]) < seen.parts.sum()
 
 
 def test_parts_are_the_residuals_of_vertices_whose_sum_bounds_the_change() -> None:
@@ -81,7 +92,7 @@ def test_parts_are_the_residuals_of_vertices_whose_sum_bounds_the_change() -> No
 
 
 def test_residuals_add_up_to_the_change_in_three_dimensions(tmp_path: Path) -> None:
-    """Of the force on a cube, whose edges stay straight."""
+    """Test the force on a cube, whose edges stay straight."""
     cube = {"name": "cube", "type": "stl", "file": str(binary_stl(tmp_path / "cube.stl", 0.4 * CUBE, TRIANGLES))}
     held = {"density": 1.0, "position": [0.45, 0.55, 0.5], "fixed": True}
     seen = found(3, body=[cube | held], mesh={"size": 0.5, "size_body": 0.4, "order": 1}, **CREEPING)
@@ -90,7 +101,7 @@ def test_residuals_add_up_to_the_change_in_three_dimensions(tmp_path: Path) -> N
 
 
 def test_residuals_follow_the_change_with_convection() -> None:
-    """At a Reynolds number of 40 and on cells that are fine enough for it."""
+    """Take a Reynolds number of 40, and cells that are fine enough for it."""
     seen = found(2, body=[POLYGON], mesh={"size": 0.1, "size_body": 0.03, "order": 1})
     assert seen.residuals.sum(axis=1)[0] == pytest.approx(-seen.change[0], rel=0.3)
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.state import State
+from rigidfluid.core.model.system import System
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,8 +43,8 @@ class ErrorEstimate(ABC):
         """Tell whether a mesh is judged by it after so many whole ``steps``, ``age`` of them on this mesh [1]."""
 
     @abstractmethod
-    def error(self, state: State) -> EstimatedError | None:
-        """Error of a ``state``'s mesh; None where it cannot be told."""
+    def error(self, system: System, state: State) -> EstimatedError | None:
+        """Error of a ``state``'s mesh, whose bodies are those of the ``system`` now; None where it cannot be told."""
 
 
 class ErrorOfFlow(ErrorEstimate):
@@ -53,7 +54,7 @@ class ErrorOfFlow(ErrorEstimate):
         """Always: it is known."""
         return True
 
-    def error(self, state: State) -> EstimatedError | None:
+    def error(self, system: System, state: State) -> EstimatedError | None:
         """Error of the mesh in the step to this ``state``; None where it was not estimated."""
         return mesh_error(state)
 

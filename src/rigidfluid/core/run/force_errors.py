@@ -21,27 +21,27 @@ transferred flow errs more at first, and each takes as long as some ten steps.""
 
 
 class ErrorOfForces(ErrorEstimate):
-    """Error of forces and torques on the bodies of a ``system``, over the root of the sum of their forces' squares;
-    ``time_at`` gives the time of a tick [time]."""
+    """Error of forces and torques on the bodies, over the root of the sum of their forces' squares; ``time_at`` gives
+    the time of a tick [time]."""
 
-    def __init__(self, system: System, time_at: Callable[[int], float]) -> None:
-        self._system, self._time_at = system, time_at
+    def __init__(self, time_at: Callable[[int], float]) -> None:
+        self._time_at = time_at
         self._latest: tuple[State, EstimatedError | None] | None = None
 
     def is_asked(self, steps: float, age: float) -> bool:
         """Tell so at whole steps alone: once when a mesh has settled, and later now and then."""
         return steps == int(steps) and (_FIRST <= age < _FIRST + 1 or (age > _FIRST and steps % _EVERY == 0))
 
-    def error(self, state: State) -> EstimatedError | None:
+    def error(self, system: System, state: State) -> EstimatedError | None:
         """Error in the ``state``'s flow; who decides for a mesh and who makes it ask one after the other."""
         if self._latest is None or self._latest[0] is not state:
-            self._latest = state, self._estimated(state)
+            self._latest = state, self._estimated(system, state)
         return self._latest[1]
 
-    def _estimated(self, state: State) -> EstimatedError | None:
+    def _estimated(self, system: System, state: State) -> EstimatedError | None:
         if state.past is None:
             return None
-        system, mesh = self._system, state.mesh
+        mesh = state.mesh
         step = step_in_place(system, state, self._time_at(state.tick), 0.0)
         try:
             finer = refined_mesh(mesh, fluid_domain_at(system, state.pose).placed_on(mesh))

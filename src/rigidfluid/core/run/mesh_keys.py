@@ -64,5 +64,5 @@ def updater_of(fluid: Fluid | NoFluid, system: System, clock: Clock, watch: Stop
     accuracy = accuracy_of(table, system.dimension)
     wanted = (*wakes_of(table, system.dimension), *fluid.size_fields, *([] if accuracy is None else [accuracy]))
     renewal = renewal_of(table, clock, accuracy)
-    estimate = ErrorOfForces(system, clock.time) if table.goal == "forces" else ErrorOfFlow()
+    estimate = ErrorOfForces(clock.time) if table.goal == "forces" else ErrorOfFlow()
     return MeshUpdater(system, sizes_of(table, system.domain), renewal, wanted, inserter_of(table), watch, estimate)

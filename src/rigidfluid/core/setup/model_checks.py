@@ -203,6 +203,8 @@ def _check_goal(model: Model) -> None:
     found = repr(model.fluid.mesh.goal)
     if model.fluid.mesh.accuracy is None:
         raise SceneError("mesh.goal", f"{found} without `accuracy`", "it beside an accuracy", "Add accuracy = 0.01.")
+    if not model.bodies:
+        raise SceneError("mesh.goal", f"{found} without a body", "it beside bodies", "Let the goal be 'flow'.")
     _require("duals", model, "mesh.goal", found, "a backend that gives errors of forces")
     material = model.fluid.material
     if not isinstance(material, Newtonian):

@@ -15,9 +15,10 @@ from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.stepping.advance import Equations, coupled_system, step_matrix
 from rigidfluid.taylor_hood.stepping.refined_flow import InPlace, combined, on_finer, prolonged
 from rigidfluid.taylor_hood.system.boundary import pressure_load
-from rigidfluid.taylor_hood.system.coupled import CoupledSystem
+from rigidfluid.taylor_hood.system.coupled import CoupledSystem, Solution
 from rigidfluid.taylor_hood.system.dimensionless import Dimensionless
-from rigidfluid.taylor_hood.system.discretisation import TellsResidual
+from rigidfluid.taylor_hood.system.discretisation import Discretisation, TellsResidual
+from rigidfluid.taylor_hood.system.driving import driving_load, fluxes, held_faces, unit_drop
 
 _TOLERANCE = 1e-3
 """Relative residual of dual flows, and _SETTLED their change, that are let pass: they are weights alone [1]."""
@@ -42,11 +43,11 @@ def weighted_residuals(fine: InPlace, fluid: FluidState, coarse: Numbering, mesh
     All motions of the ``fine`` step, which is that fluid's own, are prescribed. A force is tested by a dual flow z, r
     with z = e_j on bodies, and a torque by one that turns as fast at the bounding radius:
 
-    -ρ(u - w)·∇z + ρ(∇u)ᵀz - ∇·σ(z, r) = 0, ∇·z = 0, with ∂z/∂t omitted
+    -ρ(u - w)·∇z + ρ(∇u)ᵀz - ∇·σ(z, r) = 0, ∇·z = 0, with ∂z/∂t omitted, and no flux where one is held
 
     The error is the residual R of u, p for what is left of z and r when they are interpolated on the coarse cells, all
-    at halved edges. With the linear test functions φ_i of the coarse vertices, whose sum is one,
-    η_ij = R(u, p; φ_i (z - Iz), φ_i (r - Ir)).
+    at halved edges; jumps of r at seams, which no pressure of the coarse equations has, are left whole. With the linear
+    test functions φ_i of the coarse vertices, whose sum is one, η_ij = R(u, p; φ_i (z - Iz), φ_i (r - Ir)).
 
     Notes
     -----
@@ -56,13 +57,13 @@ def weighted_residuals(fine: InPlace, fluid: FluidState, coarse: Numbering, mesh
     there, system = fine.target.numbering, _system(fine, fluid, coarse, mesh)
     assert isinstance(fine.target, Dimensionless)
     assert isinstance(fine.target.inner, TellsResidual)
-    of_velocity, of_pressure = np.split(fine.target.inner.residual(system), [system.velocity.size])
-    of_velocity = of_velocity.reshape(system.velocity.shape)
+    missed, divergence = np.split(fine.target.inner.residual(system), [system.velocity.size])
+    missed = missed.reshape(system.velocity.shape)
     found = []
-    for velocity, pressure in _dual_flows(fine, system):
+    for velocity, pressure, jump in _dual_flows(fine, system):
         left = velocity - on_finer(velocity[: coarse.nodes], coarse, there)
-        left_pressure = pressure - coarse.interpolate_to_nodes(pressure[: coarse.vertices])
-        weighted = _shared(np.sum(of_velocity * left, axis=1), there) + of_pressure * left_pressure
+        left_pressure = pressure - coarse.interpolate_to_nodes((pressure - jump)[: coarse.vertices])
+        weighted = _shared(np.sum(missed * left, axis=1), there) + divergence * left_pressure
         found.append(_shared(weighted, coarse))
     return np.array(found)
 
@@ -73,42 +74,68 @@ def _system(fine: InPlace, fluid: FluidState, coarse: Numbering, mesh: Mesh) -> 
     prolongation = prolonged(fluid, coarse, mesh, target.numbering, finer)
     matrix = step_matrix(target, prolongation, finer, step)
     on_faces = pressure_load(target.surfaces, matrix.node_points, step.time)
-    return coupled_system(Equations(target, matrix, prolongation, finer, step), on_faces)
+    system = coupled_system(Equations(target, matrix, prolongation, finer, step), on_faces)
+    return replace(system, load=system.load + driving_load(target.surfaces, system))
 
 
-def _dual_flows(fine: InPlace, system: CoupledSystem) -> Iterator[tuple[FloatArray, FloatArray]]:
-    """Velocity (nodes, d) and pressure (vertices,) of each dual flow: Picard's iteration for ρ(∇u)ᵀz, accelerated as in
-    `self_convected`."""
-    target, matrix, step = fine.target, system.matrix, fine.step
-    still, count = np.zeros_like(system.velocity), len(step.pose.position)
+def _dual_flows(fine: InPlace, system: CoupledSystem) -> Iterator[tuple[FloatArray, FloatArray, FloatArray]]:
+    """Velocity (nodes, d), pressure (vertices,) and its jump at seams (vertices,) of each dual flow. None goes through
+    faces whose flux is held: it has as much of the flow by a unit drop of pressure there as that takes."""
+    target, matrix, step, surfaces = fine.target, system.matrix, fine.step, fine.target.surfaces
+    still, every = _at_rest(system), np.ones(len(step.pose.position), dtype=bool)
     turning = target.problem.inert_density * _mean_gradient(target.numbering, matrix.node_points, system.velocity)
+    _, faces = held_faces(surfaces)
+    units = [unit_drop(surfaces, face, still) for face in faces]
+    driven = [_dual_flow(target, unit.added_to(still), turning) for unit in units]
+
+    def through(velocity: FloatArray) -> FloatArray:
+        return fluxes(surfaces, faces, matrix.node_points, velocity)
+
+    by_unit = np.array([through(flow.velocity) for flow in driven]).T
+    for twist in _unit_twists(fine):
+        prescribed = still.prescribed.copy()
+        surfaces.move_with_bodies(prescribed, matrix.node_points, step.pose.position, twist, every)
+        moved = _dual_flow(target, replace(still, prescribed=prescribed), turning)
+        velocity, pressure, jump = moved.velocity, moved.pressure, still.pressure_jump
+        if driven:
+            for factor, flow, unit in zip(np.linalg.solve(by_unit, through(velocity)), driven, units, strict=True):
+                velocity, pressure = velocity - factor * flow.velocity, pressure - factor * flow.pressure
+                jump = jump - factor * unit.jump
+        yield velocity, pressure, jump
+
+
+def _at_rest(system: CoupledSystem) -> CoupledSystem:
+    """Equations of a dual flow that nothing drives: those of a ``system`` with convection backwards."""
+    matrix, still = system.matrix, np.zeros_like(system.velocity)
     backwards = replace(
         matrix, inertia=0.0, advection=-matrix.advection, flow=-matrix.advection, frame=np.zeros_like(matrix.frame)
     )
-    unmoved = replace(
+    return replace(
         system,
         matrix=backwards,
         load=still,
         body_load=np.zeros_like(system.body_load),
+        prescribed=still,
         velocity=still,
         pressure=np.zeros_like(system.pressure),
         twist=np.zeros_like(system.twist),
         pressure_jump=np.zeros_like(system.pressure_jump),
         scale=0.0,
     )
-    for twist in _unit_twists(fine):
-        prescribed = still.copy()
-        every = np.ones(count, dtype=bool)
-        target.surfaces.move_with_bodies(prescribed, matrix.node_points, step.pose.position, twist, every)
-        dual, found, changes = replace(unmoved, prescribed=prescribed), list[FloatArray](), list[FloatArray]()
-        for _ in range(_MOST):
-            load = -target.mass_times(matrix.points, np.einsum("nij,ni->nj", turning, dual.velocity))
-            solution = target.solve(replace(dual, load=load), _TOLERANCE)
-            found, changes = [*found, solution.velocity], [*changes, solution.velocity - dual.velocity]
-            dual = replace(dual, velocity=combined(found, changes), pressure=solution.pressure, again=True)
-            if np.linalg.norm(changes[-1]) <= _SETTLED * np.linalg.norm(solution.velocity) or not turning.any():
-                break
-        yield solution.velocity, solution.pressure
+
+
+def _dual_flow(target: Discretisation, dual: CoupledSystem, turning: FloatArray) -> Solution:
+    """Solution of the equations ``dual`` with the load -ρ(∇u)ᵀz besides, ``turning`` ρ∇u (nodes, d, d): Picard's
+    iteration, accelerated as in `self_convected`."""
+    given, found, changes = dual.load, list[FloatArray](), list[FloatArray]()
+    for _ in range(_MOST):
+        load = given - target.mass_times(dual.matrix.points, np.einsum("nij,ni->nj", turning, dual.velocity))
+        solution = target.solve(replace(dual, load=load), _TOLERANCE)
+        found, changes = [*found, solution.velocity], [*changes, solution.velocity - dual.velocity]
+        dual = replace(dual, velocity=combined(found, changes), pressure=solution.pressure, again=True)
+        if np.linalg.norm(changes[-1]) <= _SETTLED * np.linalg.norm(solution.velocity) or not turning.any():
+            break
+    return solution
 
 
 def _unit_twists(fine: InPlace) -> Iterator[FloatArray]:

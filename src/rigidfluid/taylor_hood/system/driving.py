@@ -51,14 +51,12 @@ def solve_driven(
         Relative residual of each solution [1].
     """
     surfaces, points = discretisation.surfaces, system.matrix.node_points
-    first = surfaces.first_faces
-    held = [number for number, face in enumerate(first) if face.condition.held_flux is not None]
+    held, faces = held_faces(surfaces)
     if not held:
         return Driven(*_solve_undriven(discretisation, system, links, tolerance), np.zeros_like(system.load))
-    faces = [first[number] for number in held]
     wanted = np.array([face.condition.held_flux(time) for face in faces if face.condition.held_flux is not None])
     held_still = anchor(surfaces, system.matrix, links, np.array([face.condition.normal for face in faces]))
-    units = [_unit_drop(surfaces, face, system) for face in faces]
+    units = [unit_drop(surfaces, face, system) for face in faces]
     units += [replace(units[0].nothing(), body_load=load) for load in held_still.loads(system.body_load)]
 
     def missed(solution: Solution) -> FloatArray:
@@ -99,7 +97,7 @@ def fluxes(surfaces: Surfaces, faces: Sequence[Face], node_points: FloatArray, v
 
 
 @dataclass(frozen=True, eq=False)
-class _Unit:
+class Unit:
     """Right side of a unit of one unknown: ``load`` (nodes, d) and pressure ``jump`` (vertices,) of a drop, or
     ``body_load`` (N, d+k) of an anchor."""
 
@@ -107,8 +105,8 @@ class _Unit:
     jump: FloatArray
     body_load: FloatArray
 
-    def nothing(self) -> _Unit:
-        return _Unit(*(np.zeros_like(each) for each in (self.load, self.jump, self.body_load)))
+    def nothing(self) -> Unit:
+        return Unit(*(np.zeros_like(each) for each in (self.load, self.jump, self.body_load)))
 
     def added_to(self, system: CoupledSystem) -> CoupledSystem:
         return replace(
@@ -119,18 +117,33 @@ class _Unit:
         )
 
 
-def _unit_drop(surfaces: Surfaces, face: Face, system: CoupledSystem) -> _Unit:
+def held_faces(surfaces: Surfaces) -> tuple[list[int], list[Face]]:
+    """Numbers among the first faces of periodic pairs, (h,), of those whose flux is held, and these faces."""
+    held = [number for number, face in enumerate(surfaces.first_faces) if face.condition.held_flux is not None]
+    return held, [surfaces.first_faces[number] for number in held]
+
+
+def driving_load(surfaces: Surfaces, system: CoupledSystem) -> FloatArray:
+    """Load (nodes, d) of the drops in the pressure of a ``system`` on the faces whose flux is held."""
+    held, faces = held_faces(surfaces)
+    if not held:
+        return np.zeros_like(system.load)
+    drops = surfaces.pressure_drops(system.pressure)[held]
+    return _combined([unit_drop(surfaces, face, system) for face in faces], drops).load
+
+
+def unit_drop(surfaces: Surfaces, face: Face, system: CoupledSystem) -> Unit:
     """Load and pressure jump of a unit drop of pressure from a face on."""
     points, load = system.matrix.node_points, np.zeros_like(system.load)
     np.add.at(load, face.facet_nodes, face.area_vectors(points))
-    return _Unit(load, surfaces.unit_jump(face.condition.surface), np.zeros_like(system.body_load))
+    return Unit(load, surfaces.unit_jump(face.condition.surface), np.zeros_like(system.body_load))
 
 
-def _combined(units: Sequence[_Unit], factors: FloatArray) -> _Unit:
+def _combined(units: Sequence[Unit], factors: FloatArray) -> Unit:
     """The ``units``, each times its factor, added up."""
     found = units[0].nothing()
     for factor, unit in zip(factors, units, strict=True):
-        found = _Unit(
+        found = Unit(
             found.load + factor * unit.load,
             found.jump + factor * unit.jump,
             found.body_load + factor * unit.body_load,
@@ -141,7 +154,7 @@ def _combined(units: Sequence[_Unit], factors: FloatArray) -> _Unit:
 def _response(
     discretisation: Discretisation,
     system: CoupledSystem,
-    unit: _Unit,
+    unit: Unit,
     links: Links,
     tolerance: float,
 ) -> tuple[Solution, FloatArray]:

@@ -31,7 +31,7 @@ def film(material: Material, gap: float, dimension: int, closing: float = SPEED,
 
 
 def power_law_force(exponent: float, consistency: float, dimension: int) -> float:
-    """Of the exact flow between two plates at each place of a squeezed film whose gap is a parabola, up to R."""
+    """Force by the exact flow between two plates at each place of a squeezed film whose gap is a parabola, up to R."""
 
     def pressed(place: float) -> float:
         r = np.sqrt(2.0 * RADIUS * GAP) * np.exp(place)

@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 import rigidfluid
-from rigidfluid.api import Scene, Simulation, build_system, scene_from_dict
+from rigidfluid.api import FloatArray, Scene, Simulation, scene_from_dict
+from rigidfluid.core.model.flow_error import RefinedFlow
+from rigidfluid.core.model.types import Step
 from rigidfluid.core.run.force_errors import ErrorOfForces
 from rigidfluid.errors import SceneError
 
@@ -54,14 +56,33 @@ def test_a_run_gets_to_the_accuracy_of_its_force_and_goes_on_from_there(tmp_path
 
 
 def test_a_mesh_is_judged_once_when_it_is_four_steps_old_and_then_every_twenty_steps() -> None:
-    estimate = ErrorOfForces(build_system(channel()), float)
+    estimate = ErrorOfForces(float)
     asked = [step for step in np.arange(0.0, 62.0, 0.5) if estimate.is_asked(step, step - 13.5)]
     assert asked == [18.0, 20.0, 40.0, 60.0]
 
 
+def test_a_mesh_around_bodies_that_have_entered_is_judged_by_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    from rigidfluid.backends.scikit_fem import ScikitFem
+
+    judged, own = list[int](), ScikitFem.force_errors
+
+    def noted(backend: ScikitFem, flow: RefinedFlow, step: Step) -> FloatArray:
+        judged.append(len(step.pose.position))
+        return own(backend, flow, step)
+
+    simulation = Simulation(channel(mesh=AUTO | {"accuracy": 0.5, "size_body": 0.1}))
+    simulation.step()
+    shape = {"type": "sphere", "radius": 0.1, "density": 1.0}
+    simulation.add(shape | {"name": "other", "position": [1.4, 0.5], "fixed": True})
+    monkeypatch.setattr(ScikitFem, "force_errors", noted)
+    simulation.go(until=0.6)
+    assert judged
+    assert set(judged) == {2}
+
+
 def test_nothing_is_told_before_the_first_step() -> None:
     simulation = Simulation(channel())
-    assert ErrorOfForces(simulation.system, float).error(simulation.state) is None
+    assert ErrorOfForces(float).error(simulation.system, simulation.state) is None
 
 
 @pytest.mark.parametrize(
@@ -72,6 +93,7 @@ def test_nothing_is_told_before_the_first_step() -> None:
             {"fluid": {"density": 1.0, "material": MATERIAL}, "mesh": AUTO | {"accuracy": 0.01}},
             "'forces' with material 'bingham'",
         ),
+        ({"body": []}, "'forces' without a body"),
     ],
 )
 def test_goals_that_nothing_follows_are_refused(tables: dict[str, Any], found: str) -> None:

@@ -197,7 +197,9 @@ class MeshUpdater:
         """Flow of a ``state`` for size ``fields``, on the root; None without any, and on the other ranks."""
         if not fields:
             return None
-        return flow_on(self.system.backend, state.fluid, state.mesh, state.twist, self._estimate.error(state))
+        return flow_on(
+            self.system.backend, state.fluid, state.mesh, state.twist, self._estimate.error(self.system, state)
+        )
 
     def _sizes_by(self, fields: Sequence[SizeField], around: FluidDomain, flow: Flow | None) -> Sizes:
         """Sizes with what ``fields`` ask for in their ``flow``."""
@@ -244,7 +246,7 @@ class MeshUpdater:
         steps, age = (tick / self._renewal.pause for tick in (state.tick, state.tick - state.reference.tick))
         if accuracy is None or not self._estimate.is_asked(steps, age):
             return False
-        error = self._estimate.error(state)
+        error = self._estimate.error(self.system, state)
         if error is None or not accuracy.is_due(error, age):
             return False
         mesh, fields = state.mesh, [field for field in self._fields if field is not accuracy]
