@@ -13,7 +13,7 @@ import rigidfluid
 from rigidfluid.core.output.records import columns
 from rigidfluid.registry import KINDS, Registry
 
-PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
+PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -42,7 +42,7 @@ def test_every_built_in_part_is_among_the_features() -> None:
     assert [name for name in built_in if f"`{name}`" not in page] == []
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_links_lead_to_files(page: Path) -> None:
     links = re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8"))
     assert [link for link in links if not (page.parent / link).exists()] == []

@@ -1,5 +1,7 @@
 """Projections along velocities without divergence against those by a step's own solver; and the matrices they need."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from falling import falling_disk
@@ -70,6 +72,22 @@ def test_a_gradient_much_larger_than_the_flow_is_taken_out_to_round_off(given):
     steep = velocity + 2e2 * (at - at.mean(axis=0))
     found = target.projection(points, position).nearest(steep, 1e-11, velocity, velocity)
     assert np.isfinite(found).all()
+
+
+def test_a_solution_is_refined_to_round_off_and_not_on_beyond_it(given):
+    target, points, position, velocity = given
+    projection = target.projection(points, position)
+    factors, solved = projection._factors, []
+
+    def counted(divergence):
+        solved.append(divergence)
+        return factors.solve(divergence)
+
+    projection._factors = SimpleNamespace(solve=counted)
+    divergence = projection._whole_divergence @ velocity.ravel()
+    left = divergence - projection._divergence @ (projection._force(divergence, refined=True) / projection._diagonal)
+    assert np.linalg.norm(left) < 2e-13 * np.linalg.norm(divergence)
+    assert 2 <= len(solved) <= 4
 
 
 def test_a_projection_that_does_not_converge_rejects_the_step(given, monkeypatch):

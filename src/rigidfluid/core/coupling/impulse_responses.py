@@ -135,7 +135,7 @@ def _evaluated(
     impulses = np.zeros((len(numbers), *step.load.shape))
     impulses[side, bodies, turn] = 1.0
     response = system.backend.response(state.fluid, state.mesh, step, impulses)
-    mine = _is_nearest(position, velocities // width, bodies, side)
+    mine = _is_nearest(_distances(system, position[velocities // width], position[bodies]), side)
     inviscid, viscous = (
         np.where(mine, twists.reshape(len(numbers), -1)[side][:, velocities].T, np.nan)
         for twists in (response.inviscid, response.viscous)
@@ -147,7 +147,7 @@ def _groups_apart(system: System, position: FloatArray, bodies: IntArray) -> Int
     """Group of each of ``bodies`` (f,), whose members are far apart."""
     each, place = np.unique(bodies, return_inverse=True)
     reach = reaches(system)[1][each]
-    apart = np.linalg.norm(position[each, None] - position[None, each], axis=2)
+    apart = _distances(system, position[each], position[each])
     near = apart < FAR * (reach[:, None] + reach[None, :])
     group = np.full(len(each), -1)
     for body in range(len(each)):
@@ -156,11 +156,17 @@ def _groups_apart(system: System, position: FloatArray, bodies: IntArray) -> Int
     return np.asarray(group[place])
 
 
-def _is_nearest(position: FloatArray, responding: IntArray, pushed: IntArray, side: IntArray) -> BoolArray:
-    """Tell whether the ``pushed`` body (f,) is the nearest one of its right ``side`` (f,) to the ``responding`` one
-    (c,), (c, f)."""
-    apart = np.linalg.norm(position[responding][:, None] - position[pushed][None, :], axis=2)
-    nearest = np.full((len(responding), int(side.max()) + 1), np.inf)
+def _distances(system: System, responding: FloatArray, pushed: FloatArray) -> FloatArray:
+    """Distance of each place ``pushed`` (f, d), or of its nearest image, from each ``responding`` one (c, d), (c, f)
+    [length]: a fluid between periodic surfaces responds across them too."""
+    apart = system.domain.cells.shortened(responding[:, None] - pushed[None, :])
+    return np.asarray(np.linalg.norm(apart, axis=2))
+
+
+def _is_nearest(apart: FloatArray, side: IntArray) -> BoolArray:
+    """Tell whether each pushed body is the nearest one of its right ``side`` (f,) to each responding one, (c, f);
+    they are so far ``apart`` (c, f)."""
+    nearest = np.full((len(apart), int(side.max()) + 1), np.inf)
     for column, number in enumerate(side):
         nearest[:, number] = np.minimum(nearest[:, number], apart[:, column])
     return np.asarray(apart <= nearest[:, side])

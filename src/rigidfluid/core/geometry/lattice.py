@@ -28,7 +28,7 @@ class Lattice:
         return float(self.lengths.min(initial=np.inf))
 
     def components(self, differences: FloatArray) -> FloatArray:
-        """Components d·v_i/|v_i|² of ``differences`` (N, d), (N, k) [1]."""
+        """Components d·v_i/|v_i|² of ``differences`` (…, d), (…, k) [1]."""
         return np.asarray(differences @ (self.vectors / self.lengths[:, None] ** 2).T)
 
     def coordinates(self, points: FloatArray) -> FloatArray:
@@ -40,8 +40,12 @@ class Lattice:
         return np.floor(self.coordinates(points)).astype(np.int64)
 
     def displacement(self, cells: IntArray) -> FloatArray:
-        """Displacements of ``cells`` (N, k) from the first one, (N, d) [length]."""
+        """Displacements of ``cells`` (…, k) from the first one, (…, d) [length]."""
         return np.asarray(cells @ self.vectors)
+
+    def shortened(self, differences: FloatArray) -> FloatArray:
+        """Shortest images of ``differences`` (…, d) of points, (…, d) [length]."""
+        return differences - self.displacement(np.rint(self.components(differences)).astype(np.int64))
 
     def wrapped(self, points: FloatArray) -> FloatArray:
         """Images of ``points`` (N, d) in the first cell, (N, d) [length]."""

@@ -12,7 +12,7 @@ from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.nested.part_options import build_part
 from rigidfluid.core.nested.placing import check_orientation
 from rigidfluid.core.scene.body_tables import InitialAngle, InitialOrientation
-from rigidfluid.core.scene.patterns import PRINTABLE
+from rigidfluid.core.scene.patterns import BODY_NAME
 from rigidfluid.core.scene.vectors import Vector
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import BODY, Registry
@@ -23,7 +23,7 @@ class NestedBodyTable(PartOptions):
 
     model_config = ConfigDict(extra="allow")
 
-    name: str = Field(default="", pattern=PRINTABLE, description="Name; numbered from 0 if not given")
+    name: str = Field(default="", pattern=BODY_NAME, description="Name; numbered from 0 if not given")
     type: str = Field(description="Name of a body type")
     position: Vector = Field(description="Position of the centre of mass [length]")
     angle: InitialAngle = None

@@ -81,11 +81,9 @@ class Exchange:
         def velocities(points: FloatArray) -> tuple[BoolArray, FloatArray]:
             left, velocity = np.zeros(len(points), dtype=bool), np.zeros_like(points)
             for body in gone:
-                away = np.rint(lattice.components(points - pose.position[body])).astype(np.int64)
-                near = points - lattice.displacement(away)
-                inside = distance_to_body(pose, body, self.before.bodies[body], near) <= 0.0
-                arm = near[inside] - pose.position[body]
-                velocity[inside] = twist.velocity[body] + cross(twist.angular_velocity[body], arm)
+                arm = lattice.shortened(points - pose.position[body])
+                inside = distance_to_body(pose, body, self.before.bodies[body], pose.position[body] + arm) <= 0.0
+                velocity[inside] = twist.velocity[body] + cross(twist.angular_velocity[body], arm[inside])
                 left |= inside
             return left, velocity
 

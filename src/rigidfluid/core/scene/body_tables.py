@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from rigidfluid.core.scene.joint_tables import SpringTable
-from rigidfluid.core.scene.patterns import PRINTABLE
+from rigidfluid.core.scene.patterns import BODY_NAME
 from rigidfluid.core.scene.table import OpenTable, Positive, Table
 from rigidfluid.core.scene.vectors import Angular, Vector
 
@@ -42,8 +42,8 @@ class BodyTable(OpenTable):
 
     name: str = Field(
         default="",
-        pattern=PRINTABLE,
-        description="Name in the results, without control characters; `body0`, `body1`, … if not given",
+        pattern=BODY_NAME,
+        description="Name in the results, without control characters and `*`; `body0`, `body1`, … if not given",
     )
     type: str = Field(description="Name of a body type")
     density: Positive = Field(description="Density of the body [mass/length^d]")
@@ -70,7 +70,7 @@ class MechanismTable(OpenTable):
 
     name: str = Field(
         default="",
-        pattern=PRINTABLE,
+        pattern=BODY_NAME,
         description="Name in the results, before those of its components; `mechanism0`, … if not given",
     )
     type: str = Field(description="Name of a mechanism")

@@ -12,7 +12,7 @@ from rigidfluid.core.scene.body_tables import (
     InitialOrientation,
     InitialVelocity,
 )
-from rigidfluid.core.scene.patterns import PRINTABLE
+from rigidfluid.core.scene.patterns import BODY_NAME
 from rigidfluid.core.scene.table import OpenTable, Positive, Table
 from rigidfluid.core.scene.vectors import Vector
 
@@ -118,7 +118,7 @@ class RandomBodies(Table):
     """Bodies whose shapes, sizes, orientations and velocities are random, and the region that holds them."""
 
     name: str = Field(
-        min_length=1, pattern=PRINTABLE, description="Beginning of the names of its bodies: `grain` gives `grain0`, …"
+        min_length=1, pattern=BODY_NAME, description="Beginning of the names of its bodies: `grain` gives `grain0`, …"
     )
     shape: tuple[SwarmShapeTable, ...] = Field(min_length=1, description="Shapes, each with its share of the bodies")
     density: Positive = Field(description="Density of the bodies [mass/length^d]")

@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, ConfigDict, Field, PlainValidator, Validat
 from pydantic.dataclasses import dataclass
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.scene.patterns import PRINTABLE
+from rigidfluid.core.scene.patterns import BODY_NAME
 from rigidfluid.core.scene.validation import LARGEST, allowed_by, value_text
 from rigidfluid.errors import ArgumentError
 
@@ -50,7 +50,7 @@ def _row(value: Any) -> Any:
 Number = Annotated[float, BeforeValidator(_plain), Field(ge=-LARGEST, le=LARGEST)]
 Positive = Annotated[float, BeforeValidator(_plain), Field(gt=0, le=LARGEST)]
 NotNegative = Annotated[float, BeforeValidator(_plain), Field(ge=0, le=LARGEST)]
-Name = Annotated[str, Field(min_length=1, pattern=PRINTABLE)]
+Name = Annotated[str, Field(min_length=1, pattern=BODY_NAME)]
 Vector = Annotated[Sequence[float] | FloatArray, PlainValidator(_components)]
 AngularVector = Annotated[float | Sequence[float] | FloatArray, PlainValidator(_rotation)]
 """A row of numbers, or a number in 2D."""

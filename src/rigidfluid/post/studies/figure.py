@@ -43,11 +43,29 @@ def check_figure(figure: FigureTable, scene: Scene) -> None:
         raise SceneError(
             f"{_FIELD}.probe", figure.probe or 0, allowed, "Correct it, or add output.probes to the scene."
         )
+    _check_flux(figure, scene)
     if figure.body is not None:
         _refuse_unknown(".body", figure.body, [body.name for body in model_of(scene).all_bodies])
     if figure.at is not None and not 0 <= figure.at <= scene.time.end:
         allowed = f"a time from 0 to time.end, {scene.time.end:g}"
         raise SceneError(f"{_FIELD}.at", figure.at, allowed, "Correct it, or run for longer.")
+
+
+def _check_flux(figure: FigureTable, scene: Scene) -> None:
+    """Refuse tables of fluxes that the scene's runs leave empty, and surfaces that they do not have."""
+    if figure.table in ("scalar", "scalar_fluxes") and scene.scalar is None:
+        raise SceneError(f"{_FIELD}.table", repr(figure.table), "that of a scene with [scalar]", "Choose another one.")
+    if figure.table not in ("driving", "scalar_fluxes"):
+        return
+    model = model_of(scene)
+    known = model.surfaces
+    if figure.table == "driving":
+        known = tuple(each.name for each in model.conditions if each.image is not None) if model.wet else ()
+    if not known:
+        allowed = "that of a scene with a fluid between periodic surfaces"
+        raise SceneError(f"{_FIELD}.table", repr(figure.table), allowed, "Choose another one.")
+    if figure.surface is not None:
+        _refuse_unknown(".surface", figure.surface, known)
 
 
 def read_figure(figure: FigureTable, history: History) -> float:
@@ -74,19 +92,21 @@ def _table_value(figure: FigureTable, history: History) -> float:
     table = history.table(str(figure.table))
     rows = _rows(figure, table)
     values: FloatArray = table[str(figure.column)][rows]
-    if figure.at is not None:
-        return _interpolated(table["time"][rows], values, figure.at)
     if len(values) == 0:
         return math.nan
+    if figure.at is not None:
+        return _interpolated(table["time"][rows], values, figure.at)
     return float(values.max() if figure.extreme == "highest" else values.min())
 
 
 def _rows(figure: FigureTable, table: dict[str, NDArray[Any]]) -> BoolArray:
-    """Rows (s,) of one body or one probe; in the table of contacts, rows of one body or of all."""
+    """Rows (s,) of one body, one probe or one surface; in the table of contacts, rows of one body or of all."""
     if figure.table == "bodies":
         return np.asarray(table["body"] == (figure.body or table["body"][0]))
     if figure.table == "probes":
         return np.asarray(table["probe"] == (figure.probe or 0))
+    if figure.table in ("driving", "scalar_fluxes"):
+        return np.asarray(table["surface"] == (figure.surface or table["surface"][:1]))
     if figure.body is not None:
         return np.asarray((table["a"] == figure.body) | (table["b"] == figure.body))
     return np.ones(len(table["time"]), dtype=bool)

@@ -56,7 +56,7 @@ class FigureTable(StrictTable):
     """A number that a run ends with: a key path of summary.json, or a column of a table at a time or its extreme."""
 
     key: str | None = Field(default=None, description="Key path of summary.json, as `energy.dissipation`")
-    table: Literal["bodies", "contacts", "energy", "probes"] | None = Field(
+    table: Literal["bodies", "contacts", "energy", "probes", "driving", "scalar", "scalar_fluxes"] | None = Field(
         default=None, description="Table that holds the column"
     )
     column: str | None = Field(default=None, description="Column of that table")
@@ -64,6 +64,9 @@ class FigureTable(StrictTable):
         default=None, description="Name of the body, the first if not given; in contacts.csv one of the two, all if not"
     )
     probe: int | None = Field(default=None, ge=0, description="Number of the probe; the first if not given")
+    surface: str | None = Field(
+        default=None, description="Name of the surface in driving.csv and scalar_fluxes.csv; the first if not given"
+    )
     at: float | None = Field(default=None, description="Time when the column is read, by cubic interpolation [time]")
     extreme: Literal["highest", "lowest"] | None = Field(default=None, description="Which extreme over time is taken")
 
@@ -76,7 +79,7 @@ class FigureTable(StrictTable):
     def _is_one_of_two(self) -> FigureTable:
         of_summary = self.key is not None
         of_table = self.table is not None and self.column is not None and (self.at is None) != (self.extreme is None)
-        rest = (self.table, self.column, self.body, self.probe, self.at, self.extreme)
+        rest = (self.table, self.column, self.body, self.probe, self.surface, self.at, self.extreme)
         if of_summary == of_table or (of_summary and any(part is not None for part in rest)):
             raise ValueError("a key path of summary.json, or table, column and one of at and extreme")
         self._refuse_unread()
@@ -87,6 +90,8 @@ class FigureTable(StrictTable):
             raise ValueError("body with table bodies or contacts")
         if self.probe is not None and self.table != "probes":
             raise ValueError("probe with table probes")
+        if self.surface is not None and self.table not in ("driving", "scalar_fluxes"):
+            raise ValueError("surface with table driving or scalar_fluxes")
         if self.at is not None and self.table == "contacts":
             raise ValueError("extreme with table contacts, which has no row for each step")
 
@@ -95,7 +100,7 @@ class FigureTable(StrictTable):
             return self.key
         moment = f"at {self.at:g}" if self.at is not None else str(self.extreme)
         probe = None if self.probe is None else f"probe {self.probe}"
-        return " ".join(filter(None, (self.body, probe, self.column, moment)))
+        return " ".join(filter(None, (self.body, self.surface, probe, self.column, moment)))
 
 
 class ErrorTable(StrictTable):

@@ -10,20 +10,24 @@ import pytest
 
 from rigidfluid.core.coupling.impulse_responses import ALONE, share_sides, updated_model
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.lattice import Lattice
 from rigidfluid.core.mechanics.single_bodies import SingleBodies
 from rigidfluid.core.model.kinematics import EACH_ITS_OWN
 from rigidfluid.core.model.reduced_model import ReducedModel
 from rigidfluid.core.model.types import Contacts, Pose, Response
 
 WIDTH, D0, RADIUS = 3, 500.0, 0.1
+ALONG = np.array([[1.0, 0.0]])
 
 
 class Bodies:
     """Bodies in the plane whose responses to each other fall with distance, in place of a system, and its backend."""
 
-    def __init__(self, position: FloatArray) -> None:
+    def __init__(self, position: FloatArray, period: FloatArray = ALONG[:0]) -> None:
         self.position, count = position, len(position)
-        apart = np.linalg.norm(position[:, None] - position[None, :], axis=2)
+        lattice = Lattice(period, np.zeros(2))
+        self.domain = SimpleNamespace(cells=lattice)
+        apart = np.linalg.norm(lattice.shortened(position[:, None] - position[None, :]), axis=2)
         between = np.where(apart > 0.0, 0.1 * (RADIUS / np.where(apart > 0.0, apart, 1.0)) ** 2, 1.0)
         one = np.array([[2.0, 0.1, 0.0], [0.1, 1.5, 0.05], [0.0, 0.05, 1.0]])
         self.inviscid = np.kron(between, one)
@@ -217,6 +221,18 @@ def test_few_of_many_that_changed_share_right_sides_too():
     many.model(gaps, first)
     np.testing.assert_array_equal(many.evaluated[1], np.arange(count)[:: 4 * 3])
     assert sides == [WIDTH]
+
+
+def test_bodies_near_each_other_across_periodic_surfaces_share_no_right_side():
+    """A row along the whole period, first and last one of which are neighbours, responds as one inside it would."""
+    count, apart = 4 * ALONE, 0.25
+    ring = Bodies(row(count, apart), count * apart * ALONG)
+    model = ring.model(np.full(count, 0.01), None)
+    first, last = np.arange(WIDTH), np.arange(WIDTH) + (count - 1) * WIDTH
+    for one, other in ((first, first), (last, last), (first, last)):
+        block = np.ix_(one, other)
+        np.testing.assert_allclose(model.inverse_mass[block], ring.inviscid[block], atol=0.02)
+    assert np.abs(ring.inviscid[np.ix_(first, last)]).max() > 0.02
 
 
 @pytest.mark.parametrize(("bodies", "share"), [(ALONE, False), (ALONE + 1, True)])

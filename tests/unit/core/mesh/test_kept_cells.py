@@ -78,6 +78,22 @@ def test_cells_around_a_bad_one_are_given_up_before_the_others(monkeypatch):
     assert not second[distance < sizes.size_body].any()
 
 
+def test_no_mesh_is_asked_for_twice_where_bad_cells_are_around_all_kept_ones(monkeypatch):
+    mesh, around, sizes = meshed(2, 1.0)
+    asked = []
+
+    def all_bad(given_mesh, fluid_domain, given, cells, gradation):
+        asked.append((int(cells.sum()), gradation))
+        return given_mesh
+
+    monkeypatch.setattr(module, "remeshed_once", all_bad)
+    monkeypatch.setattr(module, "_bad_outside_films", lambda new, fluid_domain: np.arange(len(new.cells)))
+    module.best_remeshed(mesh, around, lambda points: wanted_size(points, around, sizes), LAYERS)
+    (first, _), *rest = asked
+    assert first > 0
+    assert rest == [(0, gradation) for gradation in module.GRADATIONS]
+
+
 @pytest.mark.parametrize("wanted", [0.02, 0.4])
 def test_cells_of_another_size_than_wanted_are_not_kept(wanted):
     """Gaps ask for shorter edges; where a gap has opened longer ones do."""

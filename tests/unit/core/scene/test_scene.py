@@ -264,6 +264,12 @@ BAD = {
     "no mesh": ({"mesh": DELETE}, "mesh: found nothing", "scikit-fem", "Add [mesh]"),
     "carriage return in a name": ({"body.0.name": "a\rb"}, "body.0.name: found 'a\\rb'", "no control", "Name in"),
     "escape in a name": ({"body.0.name": "a\x1b[31m"}, "body.0.name: found 'a\\x1b", "no control", "Name in"),
+    "star in a name": (
+        {"body.0.name": "a*"},
+        "body.0.name: found 'a*'",
+        "no `*`, which stands for all numbers",
+        "Name in",
+    ),
     "unsafe name": ({"scene.name": "../x"}, "scene.name: found '../x'", "letters, digits", "Name of the scene"),
 }
 

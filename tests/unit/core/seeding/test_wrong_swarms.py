@@ -22,6 +22,10 @@ SLAB = {"type": "box", "lower": [0.0, 0.0], "upper": [1.0, 0.1]}
     [
         ({}, "swarm.0.number: found none of number, fraction and file"),
         ({"number": 3, "fraction": 0.1}, "swarm.0.fraction: found number and fraction; allowed is one of number"),
+        (
+            {"number": 3, "name": "g*"},
+            "swarm.0.name: found 'g*'; allowed is a text with no control",
+        ),
         ({"number": 0}, "swarm.0.number: found 0; allowed is a value greater than or equal to 1"),
         ({"number": 10**6}, "swarm.0.number: found 1000000"),
         ({"fraction": 1.2}, "swarm.0.fraction: found 1.2"),

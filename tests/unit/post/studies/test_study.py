@@ -395,11 +395,15 @@ def test_most_expensive_run() -> None:
 
 
 def rows_of(table: str, time: float) -> list[Any]:
-    """Rows of one step: kinetic energy t², pressure of probe p (p + 1)t, contacts disk–floor and disk–ball."""
+    """Rows of one step: kinetic energy t², pressure of probe p (p + 1)t, contacts disk–floor and disk–ball, flux t at
+    the left and 2t at the back, content 3t of a scalar."""
     values: list[dict[str, Any]] = {
         "energy": [{"kinetic": time**2}],
         "probes": [{"probe": probe, "pressure": (probe + 1) * time} for probe in (0, 1)],
         "contacts": [{"a": "disk", "b": b, "gap": time + gap} for b, gap in (("floor", 0.1), ("ball", 0.2))],
+        "driving": [{"surface": name, "flux": factor * time} for name, factor in (("left", 1), ("back", 2))],
+        "scalar": [{"content": 3 * time}],
+        "scalar_fluxes": [{"surface": name, "value": factor * time} for name, factor in (("disk", 4), ("left", 5))],
     }[table]
     names = columns(2)[table]
     return [tuple({"time": time, **row}.get(name, 0.0) for name in names) for row in values]
@@ -409,12 +413,13 @@ def rows_of(table: str, time: float) -> list[Any]:
 def history() -> History:
     """One body, whose x is the cube of the time."""
     history = History(2)
+    tables = ("energy", "probes", "contacts", "driving", "scalar", "scalar_fluxes")
     places = columns(2)["bodies"].index
     for step, time in enumerate(np.linspace(0, 1, 6).tolist()):
         row: list[Any] = [0.0] * len(columns(2)["bodies"])
         row[places("time")], row[places("body")], row[places("x")] = time, "disk", time**3 - time
         history.extend({"bodies": [tuple(row)]})
-        history.extend({name: rows_of(name, time) for name in ("energy", "probes", "contacts")})
+        history.extend({name: rows_of(name, time) for name in tables})
         history.summary = {"steps": step, "rest_position": {"disk": [0.25, 0.75]}, "smallest_gap": None}
     return history
 
@@ -435,6 +440,10 @@ def history() -> History:
         ({"table": "contacts", "column": "gap", "extreme": "lowest"}, 0.1),
         ({"table": "contacts", "column": "gap", "body": "ball", "extreme": "lowest"}, 0.2),
         ({"table": "contacts", "column": "gap", "body": "disk", "extreme": "highest"}, 1.2),
+        ({"table": "driving", "column": "flux", "at": 0.5}, 0.5),
+        ({"table": "driving", "column": "flux", "surface": "back", "at": 0.5}, 1.0),
+        ({"table": "scalar", "column": "content", "extreme": "highest"}, 3.0),
+        ({"table": "scalar_fluxes", "column": "value", "surface": "left", "extreme": "highest"}, 5.0),
     ],
 )
 def test_figures(figure: Any, expected: float, history: History) -> None:
@@ -447,12 +456,38 @@ def test_figures(figure: Any, expected: float, history: History) -> None:
         ({"table": "energy", "column": "kinetik", "extreme": "lowest"}, "Did you mean 'kinetic'"),
         ({"table": "contacts", "column": "a", "extreme": "lowest"}, "error.figure.column: found 'a'"),
         ({"table": "probes", "column": "pressure", "extreme": "lowest"}, "error.figure.probe: found 0.*of 0 probes"),
+        ({"table": "driving", "column": "flux", "at": 0.0}, "error.figure.table: found 'driving'.*periodic surfaces"),
+        ({"table": "scalar", "column": "rate", "at": 0.0}, r"error.figure.table: found 'scalar'.*with .scalar."),
     ],
 )
 def test_figures_that_a_scene_will_not_have(figure: Any, text: str) -> None:
     scene = rigidfluid.load_scene(SCENES / "dry_bounce.toml")
     with pytest.raises(SceneError, match=text):
         check_figure(FigureTable.model_validate(figure), scene)
+
+
+@pytest.mark.parametrize(
+    ("shipped", "table", "column", "known"),
+    [("periodic_channel", "driving", "flux", "left"), ("hot_cavity", "scalar_fluxes", "value", "right")],
+)
+def test_surfaces_of_fluxes_are_known_before_anything_runs(shipped: str, table: Any, column: str, known: str) -> None:
+    scene = rigidfluid.load_scene(SCENES / f"{shipped}.toml")
+    figure = FigureTable(table=table, column=column, surface=known, extreme="highest")
+    check_figure(figure, scene)
+    with pytest.raises(SceneError, match=rf"error\.figure\.surface: found '{known}s'.*Did you mean '{known}'"):
+        check_figure(figure.model_copy(update={"surface": f"{known}s"}), scene)
+
+
+@pytest.mark.parametrize("table", ["driving", "scalar", "scalar_fluxes"])
+def test_tables_that_a_run_leaves_empty_are_no_figure(table: Any) -> None:
+    column = {"driving": "flux", "scalar": "content", "scalar_fluxes": "value"}[table]
+    with pytest.raises(SceneError, match=rf"nan for {column} at 0\.5"):
+        read_figure(FigureTable(table=table, column=column, at=0.5), History(2))
+
+
+def test_a_surface_is_of_a_table_of_fluxes() -> None:
+    with pytest.raises(ValueError, match="surface with table driving or scalar_fluxes"):
+        FigureTable(table="energy", column="kinetic", surface="left", at=0.5)
 
 
 def test_contacts_that_never_come_are_no_figure() -> None:

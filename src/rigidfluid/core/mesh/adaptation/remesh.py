@@ -185,8 +185,9 @@ def _tries(
         others = kept
         if made:
             others = kept & _away(mesh, made[-1], _bad_outside_films(made[-1], fluid_domain))
-        for gradation in GRADATIONS if (others != kept).any() else GRADATIONS[1:]:
-            yield others, gradation
+        if others.any():
+            for gradation in GRADATIONS if (others != kept).any() else GRADATIONS[1:]:
+                yield others, gradation
     for gradation in GRADATIONS:
         yield np.zeros_like(kept), gradation
 

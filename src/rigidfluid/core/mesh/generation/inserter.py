@@ -38,7 +38,8 @@ class Inserter:
         if domain.periodic and (of_facets or self.way not in ("cad", None)):
             found = f"{self.way!r}" if self.way else f"{of_facets[0]} made of facets"
             allowed = "'cad', and shapes that are not made of facets, as balls and ellipsoids"
-            raise MeshError("mesh.inserter", f"{found} with periodic surfaces", allowed, "Choose other shapes.")
+            remedy = "Choose other shapes." if of_facets else "Leave the key out."
+            raise MeshError("mesh.inserter", f"{found} with periodic surfaces", allowed, remedy)
         return self.way or ("fill" if of_facets else "cad")
 
 
