@@ -75,13 +75,6 @@ def test_a_velocity_given_on_a_surface_is_the_same_beyond_the_seam() -> None:
     assert works[0] > 1e-6
 
 
-def test_mechanisms_are_refused_beside_periodic_surfaces() -> None:
-    keys = {"radius": 0.05, "density": 1.0, "arms": 0.2, "amplitude": 0.05, "speed": 0.1}
-    swimmer = keys | {"type": "three_sphere_swimmer", "position": [1.0, 0.5]}
-    with pytest.raises(SceneError, match="mechanisms"):
-        scene_from_dict(tables(mechanism=[swimmer]))
-
-
 def test_detectors_on_the_mesh_are_refused_beside_periodic_surfaces() -> None:
     given = tables(BALL | {"position": [1.0, 0.5]}, contact=CONTACT | {"detector": "narrow_band"})
     with pytest.raises(SceneError, match="narrow_band"):
