@@ -21,7 +21,7 @@ from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.output.mesh_files import write_mesh_vtu, write_msh
-from rigidfluid.errors import MeshError, SceneError
+from rigidfluid.errors import SceneError
 from rigidfluid.post.insertion.insert import INSERTION, insert
 from rigidfluid.post.reports.slice import WHOLE, Slice, cut_faces
 
@@ -199,8 +199,8 @@ def test_a_scene_without_a_fluid_that_has_a_mesh_is_meshed_as_with_one(tmp_path:
 
 
 def test_a_way_that_does_not_suit_a_shape_is_refused() -> None:
-    with pytest.raises(MeshError, match=r"mesh.inserter: found 'cad' with body.0 made of facets"):
-        insert(scene_from_dict(scene(mesh={"size": 0.3, "size_body": 0.1, "inserter": "cad"})))
+    with pytest.raises(SceneError, match=r"mesh.inserter: found 'cad' with body.0 made of facets"):
+        scene_from_dict(scene(mesh={"size": 0.3, "size_body": 0.1, "inserter": "cad"}))
     with pytest.raises(SceneError, match=r"mesh.inserter"):
         scene_from_dict(scene(mesh={"size": 0.3, "size_body": 0.1, "inserter": "glue"}))
 
