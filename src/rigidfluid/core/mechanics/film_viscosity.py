@@ -6,8 +6,9 @@ from math import exp, sqrt
 
 import numpy as np
 
-from rigidfluid.core.fluid.material import Material, Newtonian
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.generalised_newtonian import GeneralisedNewtonian
+from rigidfluid.core.model.types import Material
 
 _PLACES = 12
 
@@ -26,7 +27,7 @@ def film_viscosity(
     the shear rate √(γ_v² + γ_p²), γ_v = e^(-1/3) 3 v r/h(r)² in 3D and twice that in 2D, and γ_p the speed ``passing``
     over h(r). With t = r²/(2R h(r)) the weight is 2t in 3D and (8/π) √(t(1 - t)) in 2D, from 0 to 1.
     """
-    if isinstance(material, Newtonian):
+    if not isinstance(material, GeneralisedNewtonian):
         return np.full(len(gap), material.dynamic_viscosity)
     t, weight = _places(dimension)
     squeezed = (3.0 if dimension == 3 else 6.0) * _MEAN_RATE * sqrt(2.0) * closing * np.sqrt(radius) / gap**1.5

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rigidfluid.core.fluid.material import Material
+from rigidfluid.core.fluid.material import Material as Material
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.model.kinematics import EACH_ITS_OWN, Kinematics
 from rigidfluid.core.model.ranks import ALONE, Ranks

@@ -82,7 +82,7 @@ def _dual_flows(fine: InPlace, system: CoupledSystem) -> Iterator[tuple[FloatArr
     """Velocity (nodes, d), pressure (vertices,) and its jump at seams (vertices,) of each dual flow. None goes through
     faces whose flux is held: it has as much of the flow by a unit drop of pressure there as that takes."""
     target, matrix, step, surfaces = fine.target, system.matrix, fine.step, fine.target.surfaces
-    still, every = _at_rest(system), np.ones(len(step.pose.position), dtype=bool)
+    still, every = _unmoved(system), np.ones(len(step.pose.position), dtype=bool)
     turning = target.problem.inert_density * _mean_gradient(target.numbering, matrix.node_points, system.velocity)
     _, faces = held_faces(surfaces)
     units = [unit_drop(surfaces, face, still) for face in faces]
@@ -104,7 +104,7 @@ def _dual_flows(fine: InPlace, system: CoupledSystem) -> Iterator[tuple[FloatArr
         yield velocity, pressure, jump
 
 
-def _at_rest(system: CoupledSystem) -> CoupledSystem:
+def _unmoved(system: CoupledSystem) -> CoupledSystem:
     """Equations of a dual flow that nothing drives: those of a ``system`` with convection backwards."""
     matrix, still = system.matrix, np.zeros_like(system.velocity)
     backwards = replace(

@@ -7,9 +7,9 @@ from math import sqrt
 import numpy as np
 
 from rigidfluid.core.contact.laws.loads import closing_speed, inverse_mass, pair_values
-from rigidfluid.core.fluid.material import Newtonian
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.film_viscosity import film_viscosity
+from rigidfluid.core.model.generalised_newtonian import GeneralisedNewtonian
 from rigidfluid.core.model.types import Contacts, Film, Loads
 
 _PLACES = 24
@@ -49,7 +49,7 @@ def stokes_number_taken(contacts: Contacts, film: Film, loads: Loads, gap: float
     """
     curvature = _curvature(contacts, film)
     narrow = np.minimum(np.maximum(gap, film.finest_cell**2 * curvature) * curvature, FILM_EDGE)
-    if not isinstance(film.material, Newtonian):
+    if isinstance(film.material, GeneralisedNewtonian):
         return _taken_by_parts(contacts, film, loads, narrow)
     if contacts.normal.shape[1] == 3:
         return np.asarray(np.log(FILM_EDGE / narrow))

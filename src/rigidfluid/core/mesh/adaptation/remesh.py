@@ -156,7 +156,7 @@ def best_remeshed(
 ) -> Mesh:
     """Re-mesh by MMG with the first gradation that gives good cells, else take the best of all gradations.
 
-    Of the ``layers`` of cells those around bad ones are given up first, as these are most often wedged between them;
+    Kept cells, so many ``layers``, are given up around bad ones first, as these are most often wedged between them;
     all are if no gradation gives good cells with the others kept.
     """
     made: list[Mesh] = []
@@ -203,7 +203,7 @@ def _away(mesh: Mesh, made: Mesh, bad: IntArray) -> BoolArray:
 
 
 class Given(NamedTuple):
-    """What MMG is given of a mesh: ``mesh``, with rounded lengths over ``unit`` [length], and the sizes ``wanted``
+    """A mesh as MMG is given it: ``mesh``, with rounded lengths over ``unit`` [length], and the sizes ``wanted``
     (N,) there over it [1]."""
 
     mesh: Mesh
