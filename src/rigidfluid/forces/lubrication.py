@@ -24,9 +24,9 @@ class LubricationOptions(PartOptions):
     """Keys of a table with law ``lubrication``.
 
     ``viscosity``: dynamic, of the film, μ [mass·length^(2-d)/time]; if not given, that of the fluid, where it varies at
-    the shear rates of the film. ``cutoff``: the gap below which the resistance
-    grows no further [length]. ``sliding``: whether the film resists sliding, rolling and twisting too; if not, it is
-    the leading term of squeezing. Meshes mostly resolve sliding where they do not squeezing.
+    the shear rates of the film. ``cutoff``: the gap below which the resistance grows no further [length]. ``sliding``:
+    whether the film resists sliding, rolling and twisting too; if not, it is the leading term of squeezing. Meshes
+    mostly resolve sliding where they do not squeezing.
     """
 
     viscosity: float | None = Field(
@@ -114,6 +114,8 @@ class LubricationLaw(ForceLaw):
 
     def _viscosity(self, contacts: Contacts, motion: Motion, rolling: FloatArray) -> FloatArray:
         """Viscosity of the films that move so, (m,) [mass·length^(2-d)/time]; ``rolling`` is n × w."""
+        if isinstance(self._material, Newtonian):  # asked in each substep
+            return np.full(len(contacts), self._material.dynamic_viscosity)
         closing = normal_part(motion.velocity, contacts)
         along = motion.velocity - closing[:, None] * contacts.normal
         film, radius = np.clip(contacts.gap, self.options.cutoff, self.range), _effective_radius(contacts)

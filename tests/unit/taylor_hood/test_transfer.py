@@ -162,7 +162,7 @@ def test_the_constraint_matrix_moves_a_bodys_nodes_rigidly(dimension):
     nowhere = np.zeros((0, dimension), dtype=np.int64)
     mesh = Mesh(np.zeros((dimension + 1, dimension)), cells, nowhere, np.zeros(0, dtype=np.int64))
     surfaces = Surfaces(numbering, mesh, (), (0,))
-    surfaces.body_nodes = surfaces.motion_nodes = [np.arange(count)]
+    surfaces.body_nodes = [np.arange(count)]
     constraint = Constraint(surfaces, mesh, np.array([False]))
     points, force = rng.normal(size=(numbering.nodes, dimension)), rng.normal(size=(numbering.nodes, dimension))
     position, twist = rng.normal(size=(1, dimension)), rng.normal(size=size)

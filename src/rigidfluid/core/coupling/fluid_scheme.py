@@ -15,7 +15,7 @@ from rigidfluid.core.contact.path.implicit_path import implicit_coupled
 from rigidfluid.core.contact.path.look_ahead import near_contacts
 from rigidfluid.core.contact.path.substep_path import SubstepPath
 from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
-from rigidfluid.core.coupling.impulse_responses import share_sides, updated_model
+from rigidfluid.core.coupling.impulse_responses import updated_model
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.fluid_step import StepEnd, step_to
 from rigidfluid.core.mechanics.motions import (
@@ -61,7 +61,6 @@ class FluidScheme(ABC):
             return None
         velocities = _velocities(system, near)
         step = step_to(system, state, StepEnd(time + size, size, state.motions.pose, nothing(state.motions.pose)))
-        step = _shared(step, velocities)
         known = None if state.coupling is None else state.coupling.model
         model = updated_model(system, state, step, state.contacts, flat(state.motions.twist), velocities, known)
         before, expected = self._expected_loads(state, model, size)
@@ -88,9 +87,8 @@ class FluidScheme(ABC):
         """Add the correction of the load, in place, and the impulses that correct the advecting velocity."""
         if path.coupling is None:
             return step
-        velocities = path.coupling.model.velocities
-        step.load.flat[velocities] += path.coupling.correction
-        return self._with_turning(_shared(step, velocities), state, path)
+        step.load.flat[path.coupling.model.velocities] += path.coupling.correction
+        return self._with_turning(step, state, path)
 
     def is_unsteady(self, state: State, path: BodyStep, size: float) -> bool:
         """Tell whether contacts change velocities by more than STEADY otherwise than in the step before."""
@@ -196,11 +194,6 @@ class FluidScheme(ABC):
         scale = max(float(np.linalg.norm(arm * each)) for each in (before, after, gained))
         enough = CONVERGED_SHARED if model.shared else CONVERGED
         return max(float(np.linalg.norm(arm * each)) for each in (by_load, by_response, missed)) <= enough * scale
-
-
-def _shared(step: Step, velocities: IntArray) -> Step:
-    """The step, marked where motions share right sides in the responses of these ``velocities`` (c,)."""
-    return replace(step, shared=True) if share_sides(velocities, step.load.shape[1]) else step
 
 
 def _velocities(system: System, near: Contacts) -> IntArray:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
@@ -54,7 +56,8 @@ def updated_model(
     if known is not None and not fresh.any() and np.array_equal(known.velocities, velocities):
         return known
     if fresh.any():
-        for matrix, found in zip((inviscid, viscous), _evaluated(system, state, step, velocities, fresh), strict=True):
+        evaluated = _evaluated(system, state, replace(step, shared=shared), velocities, fresh)
+        for matrix, found in zip((inviscid, viscous), evaluated, strict=True):
             _take_over(matrix, found, fresh)
     evaluation = Evaluation(*(np.where(fresh, new, old) for new, old in zip(now.arrays, before.arrays, strict=True)))
     return reduced_model(velocities, inviscid, viscous, d0, evaluation, shared)
@@ -127,8 +130,7 @@ def _evaluated(
     width = step.load.shape[1]
     bodies, turn = np.divmod(velocities[fresh], width)
     position = step.kinematics.centres(step.pose)
-    shared = share_sides(velocities, width)
-    group = _groups_apart(system, position, bodies) if shared else np.unique(bodies, return_inverse=True)[1]
+    group = _groups_apart(system, position, bodies) if step.shared else np.unique(bodies, return_inverse=True)[1]
     components = np.unique(turn)
     side = group * len(components) + np.searchsorted(components, turn)
     numbers, side = np.unique(side, return_inverse=True)

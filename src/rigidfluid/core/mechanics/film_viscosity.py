@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from math import exp, sqrt
 
 import numpy as np
@@ -35,6 +36,7 @@ def film_viscosity(
     return np.asarray(weight @ material.viscosity(rate.ravel()).reshape(rate.shape))
 
 
+@cache
 def _places(dimension: int) -> tuple[FloatArray, FloatArray]:
     """Gauss points t and weights of sum one; in 3D of t², in 2D Chebyshev's of the second kind."""
     if dimension == 3:

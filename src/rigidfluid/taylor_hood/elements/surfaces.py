@@ -62,8 +62,6 @@ class Surfaces:
         nodes = [numbering.surface_nodes(mesh, facets) for facets in on]
         self.body_nodes: list[IntArray] = nodes[:bodies]
         self._carrier: IntArray = np.array(carrier, dtype=np.int64)
-        self.motion_nodes = _nodes_of_motions(self.body_nodes, carrier)
-        """Nodes that move with each motion; of a motion of one body, its nodes."""
         self.faces = [Face.from_facets(c, on[c.surface], nodes[c.surface], mesh, numbering) for c in conditions]
         self.velocity_free: BoolArray = np.ones((numbering.nodes, d), dtype=bool)
         for face in self.faces:
@@ -174,7 +172,7 @@ class Surfaces:
     def carried_nodes(self, motions: IntArray) -> tuple[IntArray, IntArray, IntArray]:
         """Nodes (c,) on the bodies that some ``motions`` (p,) carry, with the body (c,) of each, and the place (c,) of
         its motion among these."""
-        place = np.full(max(self._carrier, default=-1) + 1, -1)
+        place = np.full(self._carrier.max(initial=-1) + 1, -1)
         place[motions] = np.arange(len(motions))
         carried = np.flatnonzero(place[self._carrier] >= 0)
         nodes, number = joined([self.body_nodes[body] for body in carried])
@@ -239,14 +237,6 @@ def joined(each: Sequence[IntArray]) -> tuple[IntArray, IntArray]:
     """All nodes of several lists, one list after the other, (c,), and the number of each node's list, (c,)."""
     number = np.repeat(np.arange(len(each)), [len(nodes) for nodes in each])
     return np.concatenate([*each, np.empty(0, np.int64)]), number
-
-
-def _nodes_of_motions(body_nodes: Sequence[IntArray], carrier: Sequence[int]) -> list[IntArray]:
-    """The nodes on all bodies that each motion carries."""
-    return [
-        np.concatenate([nodes for nodes, by in zip(body_nodes, carrier, strict=True) if by == motion])
-        for motion in range(max(carrier, default=-1) + 1)
-    ]
 
 
 def rigid_velocity(twist: FloatArray, arm: FloatArray) -> FloatArray:

@@ -62,8 +62,8 @@ def _columns(constraint: Constraint) -> IntArray:
     found[constraint.free_unknowns[velocities]] = constraint.free_columns[velocities]
     found = found.reshape(-1, d)[surfaces.originals]
     width = d + (1 if d == 2 else 3)
-    for place, motion in enumerate(np.flatnonzero(~constraint.prescribed)):
-        found[surfaces.motion_nodes[motion]] = constraint.twist_start + place * width + np.arange(d)
+    nodes, _, place = surfaces.carried_nodes(np.flatnonzero(~constraint.prescribed))
+    found[nodes] = constraint.twist_start + place[:, None] * width + np.arange(d)
     return found
 
 

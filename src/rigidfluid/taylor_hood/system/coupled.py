@@ -24,8 +24,8 @@ class CoupledMatrix:
     ∇·c keeps convection from making energy.
     ``local``: what varies of the viscosity, over ``viscosity``, and how it changes with u.
     ``mass_matrix``, ``prescribed`` are of all motions that carry the bodies, as in `Step`; ``position`` (n, d): the
-    centres of these motions in the images of the bodies that are on the mesh. ``masses``: 𝓜,
-    the masses alone of a step's matrix, by which bodies and fluid respond to impulses at once; None where not wanted.
+    centres of these motions in the images of the bodies that are on the mesh. ``masses``: 𝓜, the masses alone of a
+    step's matrix, by which bodies and fluid respond to impulses at once; None where not wanted.
     """
 
     points: FloatArray

@@ -12,9 +12,8 @@ from rigidfluid.core.coupling.impulse_responses import ALONE, share_sides, updat
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.geometry.lattice import Lattice
 from rigidfluid.core.mechanics.single_bodies import SingleBodies
-from rigidfluid.core.model.kinematics import EACH_ITS_OWN
 from rigidfluid.core.model.reduced_model import ReducedModel
-from rigidfluid.core.model.types import Contacts, Pose, Response
+from rigidfluid.core.model.types import Contacts, Pose, Response, Step
 
 WIDTH, D0, RADIUS = 3, 500.0, 0.1
 ALONG = np.array([[1.0, 0.0]])
@@ -62,8 +61,20 @@ class Bodies:
         pose = Pose(self.position, np.zeros((count, 1)))
         system: Any = self
         state: Any = SimpleNamespace(fluid=None, mesh=object())
-        step: Any = SimpleNamespace(
-            derivative=np.array([d0, 0.0, 0.0]), load=np.zeros((count, WIDTH)), pose=pose, kinematics=EACH_ITS_OWN
+        none = np.zeros((count, WIDTH))
+        step = Step(
+            time=0.0,
+            derivative=np.array([d0, 0.0, 0.0]),
+            extrapolation=np.array([1.0, 0.0]),
+            pose=pose,
+            points=None,
+            mass_matrix=np.zeros((count, WIDTH, WIDTH)),
+            load=none,
+            prescribed=np.zeros(count, dtype=bool),
+            prescribed_twist=none,
+            impulse=none,
+            load_scale=0.0,
+            turning=none,
         )
         return updated_model(system, state, step, contacts, self.twist, velocities, known)
 
@@ -189,6 +200,7 @@ def test_many_share_right_sides():
 
     def counted(fluid: Any, mesh: Any, step: Any, impulses: FloatArray) -> Response:
         sides.append(len(impulses))
+        assert step.shared
         return response(fluid, mesh, step, impulses)
 
     many.response = counted  # type: ignore[method-assign]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from math import sqrt
 
 import numpy as np
@@ -59,13 +60,19 @@ def stokes_number_taken(contacts: Contacts, film: Film, loads: Loads, gap: float
 def _taken_by_parts(contacts: Contacts, film: Film, loads: Loads, narrow: FloatArray) -> FloatArray:
     """The same integral from ``narrow`` x (m,) to the edge, its integrand times the viscosity over that at the edge."""
     dimension, width = contacts.normal.shape[1], np.log(FILM_EDGE / narrow)
-    places, weight = np.polynomial.legendre.leggauss(_PLACES)
+    places, weight = _gauss_points()
     x = FILM_EDGE * np.exp(-0.5 * (1.0 - places)[:, None] * width)
     viscosity = np.array([_viscosity(contacts, film, loads, part) for part in x])
     relative = viscosity / _edge_viscosity(contacts, film, loads)
     if dimension == 2:
         relative *= 2.0 * sqrt(2.0) / 3.0 * (1.0 + 1.05 * x) / np.sqrt(x)
     return np.asarray(0.5 * width * (weight @ relative))
+
+
+@cache
+def _gauss_points() -> tuple[FloatArray, FloatArray]:
+    """Points and weights between -1 and 1."""
+    return np.polynomial.legendre.leggauss(_PLACES)
 
 
 def _edge_viscosity(contacts: Contacts, film: Film, loads: Loads) -> FloatArray:
