@@ -23,7 +23,9 @@ from rigidfluid.taylor_hood.system.discretisation import Discretisation
 
 if TYPE_CHECKING:
     from rigidfluid.taylor_hood.elements.sampling import Samples
-    from rigidfluid.taylor_hood.stepping.scalar_step import ScalarAssembly, ScalarEquations
+    from rigidfluid.taylor_hood.elements.scalar_assembly import ScalarAssembly
+    from rigidfluid.taylor_hood.stepping.insides import Insides
+    from rigidfluid.taylor_hood.stepping.scalar_step import ScalarEquations
     from rigidfluid.taylor_hood.system.dimensionless import Dimensionless
 
 _PROVISIONAL = 1e-5
@@ -65,6 +67,7 @@ class TaylorHoodBackend(FluidBackend):
         self._latest: tuple[BoolArray, Dimensionless] | None = None
         self._latest_matrix: tuple[tuple[FluidState, Mesh, Step], CoupledMatrix] | None = None
         self._latest_attempt: tuple[FluidState, FluidState] | None = None
+        self._insides: Insides | None = None
 
     @abstractmethod
     def discretise(self, numbering: Numbering, mesh: Mesh, prescribed: BoolArray) -> Discretisation:
@@ -77,8 +80,8 @@ class TaylorHoodBackend(FluidBackend):
         """The same for flows that do not change in time, in case another solver serves where nothing has inertia."""
         return self.discretise(numbering, mesh, prescribed)
 
-    def scalar_assembly(self, mesh: Mesh) -> ScalarAssembly:
-        """The integrals of a transported scalar on this topology; asked of backends with `scalars` alone."""
+    def scalar_assembly(self, numbering: Numbering) -> ScalarAssembly:
+        """The integrals of a transported scalar on a topology; asked of backends with `scalars` alone."""
         raise NotImplementedError
 
     @abstractmethod
@@ -100,7 +103,7 @@ class TaylorHoodBackend(FluidBackend):
             flow = steady_flow(*given) if start == "steady" else formula_flow(*given)
             made = flow, kinetic_energy(target, mesh.geometry, flow["velocity"])
         self.drop_factors()
-        return self._started(made[0], mesh), made[1]
+        return self._started(made[0], mesh, pose), made[1]
 
     @final
     def struck(self, mesh: Mesh, pose: Pose, twist: Twist, step: Step) -> tuple[FluidState, float, Twist]:
@@ -110,12 +113,12 @@ class TaylorHoodBackend(FluidBackend):
         motions = Twist(*np.split(step.prescribed_twist, [self.problem.dimension], axis=1))
         if not step.prescribed.all():
             fluid, _ = initial(self._projecting_discretisation(mesh), *given, twist)
-            fluid = self._started(fluid, mesh)
+            fluid = self._started(fluid, mesh, given[2])
             motions = self._advanced(fluid, mesh, step, max(self.options.tolerance, _IMPULSE)).twist
         bodies = step.kinematics.component_twist(motions)
         fluid, kinetic = struck(self._projecting_discretisation(mesh), *given, bodies)
         self.drop_factors()
-        return self._started(fluid, mesh), kinetic, motions
+        return self._started(fluid, mesh, given[2]), kinetic, motions
 
     @final
     def advance(self, fluid: FluidState, mesh: Mesh, step: Step) -> Advance:
@@ -245,9 +248,11 @@ class TaylorHoodBackend(FluidBackend):
 
             shapes = dict.fromkeys(MOMENTA, (self.problem.dimension,))
         if self.problem.scalar is not None:
-            from rigidfluid.taylor_hood.stepping.scalar_step import NAMES, REMESHING
+            from rigidfluid.taylor_hood.stepping.scalar_step import INSIDE, NAMES, REMESHING
 
             shapes |= {**dict.fromkeys(NAMES, (numbering.nodes,)), REMESHING: ()}
+            if insides := self._insides_of_bodies():
+                shapes |= dict.fromkeys(INSIDE, (insides.nodes,))
         return {**state_shapes(numbering, mesh, pose), **shapes}
 
     @final
@@ -311,10 +316,20 @@ class TaylorHoodBackend(FluidBackend):
         from rigidfluid.taylor_hood.stepping.scalar_step import ScalarEquations
 
         assert self.problem.scalar is not None
-        surfaces = ScalarSurfaces(self.problem.scalar, self._any_discretisation(mesh).surfaces, mesh)
-        return ScalarEquations(self.problem.scalar, self.scalar_assembly(mesh), surfaces, solved_once)
+        problem, insides, numbering = self.problem.scalar, self._insides_of_bodies(), self.numbering_of(mesh)
+        surfaces = ScalarSurfaces(problem, self._any_discretisation(mesh).surfaces, mesh, insides.spaces)
+        return ScalarEquations(problem, self.scalar_assembly(numbering), surfaces, insides, solved_once)
 
-    def _started(self, fluid: FluidState, mesh: Mesh) -> FluidState:
+    def _insides_of_bodies(self) -> Insides:
+        """Elements inside the bodies that conduct, which stay the same."""
+        from rigidfluid.taylor_hood.stepping.insides import Insides
+
+        assert self.problem.scalar is not None
+        if self._insides is None:
+            self._insides = Insides(self.problem.scalar, self.scalar_assembly)
+        return self._insides
+
+    def _started(self, fluid: FluidState, mesh: Mesh, pose: Pose) -> FluidState:
         """The fluid's state at the start, with its momentum if that is kept, and the scalar if there is one."""
         from rigidfluid.taylor_hood.stepping.momentum import with_momentum
 
@@ -323,7 +338,7 @@ class TaylorHoodBackend(FluidBackend):
             return fluid
         from rigidfluid.taylor_hood.stepping.scalar_step import start
 
-        return {**fluid, **start(self._scalar_equations(mesh), mesh)}
+        return {**fluid, **start(self._scalar_equations(mesh), mesh, pose)}
 
     def _with_scalar_step(self, advanced: Advance, fluid: FluidState, mesh: Mesh, step: Step) -> Advance:
         """A step with that of the scalar; one that will be solved again has none."""
@@ -332,7 +347,7 @@ class TaylorHoodBackend(FluidBackend):
         if step.provisional:
             return replace(advanced, fluid={**advanced.fluid, **carried(fluid)})
         equations = self._scalar_equations(mesh)
-        scalar, account = scalar_step(equations, fluid, mesh, step, advanced.fluid["velocity"])
+        scalar, account = scalar_step(equations, fluid, mesh, on_mesh(step, mesh), advanced.fluid["velocity"])
         return replace(advanced, fluid={**advanced.fluid, **scalar}, scalar=account)
 
     def _samples(self, mesh: Mesh, points: FloatArray) -> Samples:

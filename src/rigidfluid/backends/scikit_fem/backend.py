@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, ClassVar, final
 
 from rigidfluid.core.fluid.material import Material, Newtonian
 from rigidfluid.core.model.generalised_newtonian import GeneralisedNewtonian
-from rigidfluid.core.model.types import Mesh
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.sparse_backend import SparseBackend
 
@@ -30,10 +29,9 @@ class ScikitFem(SparseBackend):
 
         return CompiledAssembly(numbering)
 
-    def scalar_assembly(self, mesh: Mesh) -> CompiledAssembly:
+    def scalar_assembly(self, numbering: Numbering) -> CompiledAssembly:
         from rigidfluid.backends.scikit_fem.assembly import CompiledAssembly
 
-        numbering = self.numbering_of(mesh)
         if not (isinstance(self._assembly, CompiledAssembly) and self._assembly.numbering is numbering):
             return self.assembly(numbering)
         return self._assembly

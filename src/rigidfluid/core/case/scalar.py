@@ -61,7 +61,8 @@ def _on_surface(table: _Table, at: str, dimension: int) -> ScalarOnSurface:
         None if given is None else Expression(given, f"{at}.{key}", dimension, f" on {table.on!r}")
         for key, given in (("value", table.value), ("flux", table.flux))
     )
-    return ScalarOnSurface(value, flux, table.capacity if isinstance(table, ScalarBodyTable) else None, at)
+    own = (table.capacity, table.conductivity) if isinstance(table, ScalarBodyTable) else (None, None)
+    return ScalarOnSurface(value, flux, *own, at)
 
 
 def _wrong_names(tables: Sequence[_Table], key: str, known: Sequence[str]) -> list[SceneError]:

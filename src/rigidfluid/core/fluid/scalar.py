@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rigidfluid.core.fluid.conduction import Conduction
 from rigidfluid.core.geometry.arrays import FloatArray
 
 ScalarValue = Callable[[float, FloatArray], FloatArray]
@@ -20,16 +21,23 @@ class ScalarCondition:
     ``value(time, points)`` (N,): held there; on a face through which the fluid goes as it likes, that of what comes in.
     ``flux(time, points)`` (N,): given, into the fluid [scalar·length/time]. ``capacity``: of a body that has one value,
     its ``value`` at the start, which changes by the flux: its heat capacity over the fluid's per volume [length^d].
+    ``conduction``: in a body inside which the scalar is solved for, from its ``value`` at the start on.
     """
 
     value: ScalarValue | None = None
     flux: ScalarValue | None = None
     capacity: float | None = None
+    conduction: Conduction | None = None
 
     @property
     def is_lumped(self) -> bool:
         """Tell whether it is a body with one value that changes."""
         return self.capacity is not None
+
+    @property
+    def is_solved(self) -> bool:
+        """Tell whether it is a body whose value, or values, are solved for; ``value`` is then that at the start."""
+        return self.is_lumped or self.conduction is not None
 
 
 NO_FLUX = ScalarCondition()

@@ -75,7 +75,7 @@ def _scalar_account(answer: Any, surfaces: int) -> None:
     refuse_others(answer, ScalarAccount, "scalar")
     for name in ("content", "rate", "source", "imbalance", "least", "greatest", "remeshing"):
         refuse_no_number(getattr(answer, name), f"scalar.{name}", shorter=True)
-    for name in ("flux", "value"):
+    for name in ("flux", "value", "inside"):
         refuse_other_rows(getattr(answer, name), (surfaces,), f"scalar.{name}", shorter=True)
 
 

@@ -60,7 +60,7 @@ _STATE: Shapes = {
     "stresslet": "ndd",
     "cell_errors": "M",
     "flow_error": {"times": "e", "velocity": "egd", "twist": "eNt"},
-    "scalar": {"flux": "r", "value": "r"},
+    "scalar": {"flux": "r", "value": "r", "inside": "r"},
     "motions": {
         **{"pose": _pose("N"), "twist": _twist("N")},
         **{"contact": _wrench("N"), "hydrodynamic": _wrench("N")},

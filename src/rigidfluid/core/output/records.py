@@ -48,7 +48,7 @@ def columns(dimension: int, coordinates: Iterable[str] = COORDINATES) -> dict[st
         "mesh_error": ("time", "step", "error", "dissipation", "relative"),
         "sensitivities": ("time", "step", "parameter", "body", *_derivative_columns(dimension)),
         "scalar": ("time", "step", *SCALAR_COLUMNS),
-        "scalar_fluxes": ("time", "step", "surface", "flux", "value"),
+        "scalar_fluxes": ("time", "step", "surface", "flux", "value", "inside"),
         "error_estimates": ("time", "step", "body", *estimate_columns(dimension)),
     }
 
@@ -220,5 +220,6 @@ def _error_rows(state: State, stamp: Row) -> Iterator[Row]:
 def _scalar_flux_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:
     """A row for each surface, bodies first, where a scalar is transported."""
     if state.scalar is not None:
-        for name, flux, value in zip(system.surfaces, state.scalar.flux, state.scalar.value, strict=True):
-            yield (*stamp, name, float(flux), float(value))
+        found = state.scalar
+        for name, *row in zip(system.surfaces, found.flux, found.value, found.inside, strict=True):
+            yield (*stamp, name, *map(float, row))

@@ -39,6 +39,11 @@ class ScalarBodyTable(Table):
         description="The body has one value, which changes by the flux: its heat capacity over that of as much fluid, "
         "for bodies that conduct far better than the fluid [1]",
     )
+    conductivity: Positive | None = Field(
+        default=None,
+        description="The body, with a `capacity`, conducts inside, where `value` is that at the start: its "
+        "conductivity over the fluid's [1]",
+    )
 
 
 class ScalarTable(Table):

@@ -65,7 +65,8 @@ def _scalar(problem: FluidProblem) -> Feature:
     if problem.scalar is None:
         return Feature("scalar in the fluid", False, "no table [scalar]")
     felt = "not felt by the flow" if problem.scalar.buoyancy is None else "with buoyancy"
-    return Feature("scalar in the fluid", True, felt)
+    conducting = sum(condition.conduction is not None for condition in problem.scalar.conditions)
+    return Feature("scalar in the fluid", True, felt + (f"; bodies that conduct: {conducting}" if conducting else ""))
 
 
 def _mesh(system: System, mesh: MeshTable | None) -> Iterator[Feature]:

@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import field, replace
-from functools import partial
+from functools import cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rigidfluid.core.fluid.conduction import Conduction, Inside
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.fluid.scalar import NO_FLUX, Buoyancy, ScalarCondition, ScalarProblem, ScalarValue
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.given_function import guarded_function
+from rigidfluid.core.mechanics.shapes import shape_key
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.spelling import suggestion
 from rigidfluid.core.setup.checked import Number, Positive, checked
-from rigidfluid.errors import SceneError
+from rigidfluid.errors import MeshError, SceneError
 
 if TYPE_CHECKING:
+    from rigidfluid.core.model.body import Body
     from rigidfluid.core.model.domain import Domain
     from rigidfluid.core.setup.fluid import Fluid
     from rigidfluid.core.setup.model import Model
@@ -29,7 +33,7 @@ _IN_THE_FLUID = "initial", "source"
 
 @checked
 class ScalarOnSurface:
-    """The scalar on a surface: at most one of a value and a flux, and for bodies a capacity.
+    """The scalar on a surface: at most one of a value and a flux, and for bodies a capacity and a conductivity.
 
     Parameters
     ----------
@@ -38,7 +42,9 @@ class ScalarOnSurface:
     flux : callable, optional
         ``flux(time, points)`` (N,) into the fluid [scalar·length/time].
     capacity : float, optional
-        Heat capacity of a body with one value over that of as much fluid [1].
+        Heat capacity of a body over that of as much fluid: it has one value unless there is a conductivity [1].
+    conductivity : float, optional
+        Conductivity over the fluid's of a body with a capacity, which conducts inside [1].
     field : str
         Key of the scene's table that asks for it, for messages.
     """
@@ -46,6 +52,7 @@ class ScalarOnSurface:
     value: ScalarValue | None = None
     flux: ScalarValue | None = None
     capacity: Positive | None = None
+    conductivity: Positive | None = None
     field: str = "scalar"
 
 
@@ -84,20 +91,55 @@ def with_scalar(problem: FluidProblem, scalar: Scalar, model: Model) -> FluidPro
     if scalar.expansion is not None and model.gravity is not None:
         buoyancy = Buoyancy(scalar.expansion, scalar.reference, np.array(model.gravity, dtype=float))
     names = [body.name for body in model.all_bodies]
-    volumes = [shape.volume for shape in model.shapes] + [0.0] * len(problem.conditions)
-    given = [scalar.on_bodies.get(name) for name in names]
-    given += [scalar.on_faces.get(condition.name) for condition in problem.conditions]
-    conditions = tuple(_condition(*each, model.domain) for each in zip(given, volumes, strict=True))
+    insides: dict[tuple[str, str], Callable[[], Inside]] = {}
+    on_bodies = [
+        _on_body(scalar.on_bodies.get(name), shape, model, insides)
+        for name, shape in zip(names, model.shapes, strict=True)
+    ]
+    on_faces = [_condition(scalar.on_faces.get(condition.name), model.domain) for condition in problem.conditions]
+    conditions = (*on_bodies, *on_faces)
     initial, source = (_checked_value(getattr(scalar, key), f"scalar.{key}", model.domain) for key in _IN_THE_FLUID)
     assert initial is not None
     return replace(problem, scalar=ScalarProblem(scalar.diffusivity, initial, conditions, source, buoyancy))
 
 
-def _condition(given: ScalarOnSurface | None, volume: float, domain: Domain) -> ScalarCondition:
+def _condition(given: ScalarOnSurface | None, domain: Domain) -> ScalarCondition:
     if given is None:
         return NO_FLUX
     value, flux = (_checked_value(getattr(given, key), f"{given.field}.{key}", domain) for key in ("value", "flux"))
-    return ScalarCondition(value, flux, None if given.capacity is None else given.capacity * volume)
+    return ScalarCondition(value, flux)
+
+
+def _on_body(
+    given: ScalarOnSurface | None, shape: Body, model: Model, insides: dict[tuple[str, str], Callable[[], Inside]]
+) -> ScalarCondition:
+    """The condition on a body of this ``shape``; ``insides`` by shape, to which its own is added."""
+    condition = _condition(given, model.domain)
+    if given is None or given.capacity is None:
+        return condition
+    capacity = given.capacity * shape.volume
+    if given.conductivity is None:
+        return replace(condition, capacity=capacity)
+    inside = insides.setdefault(shape_key(shape), cache(partial(_inside, shape, model, given.field)))
+    return replace(condition, conduction=Conduction(given.conductivity, capacity, inside))
+
+
+def _inside(shape: Body, model: Model, at: str) -> Inside:
+    """Cells inside a body, as large as those around it; raises MeshError."""
+    from rigidfluid.core.mesh.generation.inside import inside_mesh  # few scenes have bodies that conduct
+
+    table = model.fluid.mesh
+    assert table is not None
+    sizes = Sizes(table.size, table.size_body, table.growth, order=table.order)
+    try:
+        mesh = inside_mesh(shape, sizes, table.mesher_timeout)
+    except MeshError as error:
+        remedy = "Leave it out, so that the body has one value, or change mesh.size_body."
+        raise MeshError(f"{at}.conductivity", error.found, "a body that can be meshed inside", remedy) from error
+    curved = mesh.curved
+    if curved is None:
+        return Inside(mesh.points, mesh.cells, np.zeros((0, 2), dtype=np.int64), np.zeros((0, shape.dimension)))
+    return Inside(mesh.points, mesh.cells, curved.vertices, curved.middles)
 
 
 def _checked_value(value: ScalarValue | None, at: str, domain: Domain) -> ScalarValue | None:
@@ -156,8 +198,10 @@ def _check_faces(model: Model, scalar: Scalar) -> None:
             raise SceneError(f"{scalar.on_faces[name].field}.on", found, "a surface where the fluid ends", remedy)
     for condition in model.conditions:
         given = scalar.on_faces.get(condition.name)
-        if given is not None and given.capacity is not None:
-            raise SceneError(f"{given.field}.capacity", given.capacity, "one of bodies alone", "Leave it out.")
+        for key in ("capacity", "conductivity"):
+            own = None if given is None else getattr(given, key)
+            if given is not None and own is not None:
+                raise SceneError(f"{given.field}.{key}", own, "one of bodies alone", "Leave it out.")
         if given is None and condition.passes and condition.prescribes_normal:
             found = f"nothing on {condition.name!r}, which the fluid passes"
             allowed = "a value of what comes in, or flux = 0 of what goes out"
@@ -165,7 +209,22 @@ def _check_faces(model: Model, scalar: Scalar) -> None:
 
 
 def _check_bodies(model: Model, scalar: Scalar) -> None:
-    _check_surfaces(scalar.on_bodies, [body.name for body in model.all_bodies])
+    names = [body.name for body in model.all_bodies]
+    _check_surfaces(scalar.on_bodies, names)
+    for name, shape in zip(names, model.shapes, strict=True):
+        given = scalar.on_bodies.get(name)
+        if given is not None and given.conductivity is not None:
+            _check_inside(shape, given.field, given.conductivity)
+
+
+def _check_inside(shape: Body, at: str, conductivity: float) -> None:
+    """Refuse a body that conducts whose inside no mesher can fill."""
+    from rigidfluid.core.mesh.generation.inside import can_be_filled
+
+    if not can_be_filled(shape):
+        found = f"{conductivity:g} of a body of type {shape.name!r}"
+        remedy = "Leave it out, so that the body has one value."
+        raise SceneError(f"{at}.conductivity", found, "a shape with facets or a CAD shape", remedy)
 
 
 def _check_surfaces(given: Mapping[str, ScalarOnSurface], known: list[str]) -> None:
@@ -177,6 +236,9 @@ def _check_surfaces(given: Mapping[str, ScalarOnSurface], known: list[str]) -> N
         if condition.flux is not None and any(other is not None for other in others):
             key = "value" if condition.value is not None else "capacity"
             raise SceneError(f"{at}.flux", f"a flux and a {key}", "one of them", "Keep one.")
+        if condition.conductivity is not None and condition.capacity is None:
+            found, remedy = f"{condition.conductivity:g} without a capacity", "Add the capacity, or leave it out."
+            raise SceneError(f"{at}.conductivity", found, "one of a body with a capacity", remedy)
         if condition.flux is None and all(other is None for other in others):
             raise SceneError(f"{at}.value", "nothing", "a value or a flux", "Add one, or leave the table out.")
 

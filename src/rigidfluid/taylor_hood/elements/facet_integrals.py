@@ -57,15 +57,17 @@ def normals_at_nodes(facet_points: FloatArray) -> FloatArray:
     return np.asarray(normal / np.linalg.norm(normal, axis=2, keepdims=True))
 
 
-def area_at_points(facet_points: FloatArray) -> tuple[FloatArray, FloatArray]:
+def area_at_points(facet_points: FloatArray, points: int = _POINTS) -> tuple[FloatArray, FloatArray]:
     """Gauss' rule on each facet: the nodes' functions at its points, (q, 3 | 6), and n dA there, (F, q, d).
 
     Parameters
     ----------
     facet_points : (F, 3 | 6, d) array
         Coordinates of the nodes of each facet [length].
+    points : int
+        Points of the rule in each direction.
     """
-    shapes, slopes, weight = _tabulated(facet_points.shape[2])
+    shapes, slopes, weight = _tabulated(facet_points.shape[2], points)
     tangents = [slope @ facet_points for slope in slopes]
     area = _turned(tangents[0]) if len(tangents) == 1 else np.cross(tangents[0], tangents[1])
     return shapes, np.asarray(weight[:, None] * area)
@@ -119,9 +121,9 @@ def _slopes(at: FloatArray) -> list[FloatArray]:
     return slopes
 
 
-def _rule(dimension: int) -> tuple[FloatArray, FloatArray]:
+def _rule(dimension: int, points: int = _POINTS) -> tuple[FloatArray, FloatArray]:
     """Points (q, d), in barycentric coordinates, and weights (q,) on a facet, collapsed from a square in 3D."""
-    root, weight = np.polynomial.legendre.leggauss(_POINTS)
+    root, weight = np.polynomial.legendre.leggauss(points)
     root, weight = (1.0 + root) / 2.0, weight / 2.0
     if dimension == 2:
         return np.column_stack([1.0 - root, root]), weight
@@ -131,9 +133,9 @@ def _rule(dimension: int) -> tuple[FloatArray, FloatArray]:
 
 
 @cache
-def _tabulated(dimension: int) -> tuple[FloatArray, list[FloatArray], FloatArray]:
+def _tabulated(dimension: int, points: int) -> tuple[FloatArray, list[FloatArray], FloatArray]:
     """φⱼ and its slopes at the points of Gauss' rule, and the weights."""
-    at, weight = _rule(dimension)
+    at, weight = _rule(dimension, points)
     return _shapes(at), _slopes(at), weight
 
 

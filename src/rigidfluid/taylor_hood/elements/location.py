@@ -6,13 +6,30 @@ import numpy as np
 import scipy
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
-from rigidfluid.core.mesh.location import INSIDE, move_inside
-from rigidfluid.taylor_hood.elements.numbering import EDGES
+from rigidfluid.core.mesh.location import INSIDE, CellFinder, move_inside
+from rigidfluid.taylor_hood.elements.numbering import EDGES, Numbering
 
 _ITERATIONS, _ENOUGH = 30, 1e-14
 _BEYOND = 0.2
 """So far outside a curved cell, in its coordinates, its map is trusted."""
 _NEIGHBOURS = 32
+
+
+def located(
+    finder: CellFinder, numbering: Numbering, geometry: FloatArray, targets: FloatArray
+) -> tuple[IntArray, FloatArray]:
+    """The cell, straight or curved, of each target (N,) and its coordinates there (N, d+1), moved inside.
+
+    ``finder`` of the straight cells, ``geometry`` (vertices + K, d) of all.
+    """
+    cell, coordinates = finder.find(targets)
+    at_curves = np.flatnonzero(np.isin(cell, numbering.curved_cells))
+    if len(at_curves):
+        guess = np.searchsorted(numbering.curved_cells, cell[at_curves])
+        nodes = numbering.curved_cell_points(geometry)
+        found, coordinates[at_curves] = locate_on_curves(nodes, guess, targets[at_curves])
+        cell[at_curves] = numbering.curved_cells[found]
+    return cell, coordinates
 
 
 def locate_on_curves(nodes: FloatArray, guess: IntArray, targets: FloatArray) -> tuple[IntArray, FloatArray]:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
-from rigidfluid.core.mesh.location import CellFinder, locate
+from rigidfluid.core.mesh.location import CellFinder
 from rigidfluid.core.model.types import Mesh
-from rigidfluid.taylor_hood.elements.location import barycentric, locate_on_curves, quadratic_basis
+from rigidfluid.taylor_hood.elements.location import barycentric, located, quadratic_basis
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 
 
@@ -68,13 +68,7 @@ class Samples:
 
 def _located(mesh: Mesh, numbering: Numbering, points: FloatArray) -> tuple[_Served, FloatArray]:
     """Each point's cell of this part, and how deep in it it is: the least barycentric coordinate (N,)."""
-    cell, coordinates = locate(mesh.points, mesh.cells, points)
-    at_curves = np.flatnonzero(np.isin(cell, numbering.curved_cells))
-    if len(at_curves):
-        guess = np.searchsorted(numbering.curved_cells, cell[at_curves])
-        nodes = numbering.curved_cell_points(mesh.geometry)
-        found, coordinates[at_curves] = locate_on_curves(nodes, guess, points[at_curves])
-        cell[at_curves] = numbering.curved_cells[found]
+    cell, coordinates = located(CellFinder(mesh.points, mesh.cells), numbering, mesh.geometry, points)
     if mesh.part is None:
         return _Served(cell, coordinates), np.zeros(len(points))
     depth = barycentric(mesh.points, mesh.cells[cell], points).min(axis=1)

@@ -1,22 +1,25 @@
-"""Nodes of a transported scalar on one topology: which are held, share a body's value, or are images of others."""
+"""Nodes of a transported scalar on one topology: which are held, follow a body's value, or are images of others."""
 
 from __future__ import annotations
 
-from functools import cached_property
+from collections.abc import Mapping
+from functools import cached_property, partial
 
 import numpy as np
 from scipy import sparse
 
 from rigidfluid.core.fluid.scalar import ScalarProblem
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
-from rigidfluid.core.model.types import Mesh
+from rigidfluid.core.mechanics.frames import to_body_frame
+from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.taylor_hood.elements.face import Face
 from rigidfluid.taylor_hood.elements.facet_integrals import area_at_points
+from rigidfluid.taylor_hood.elements.inside_space import InsideSpace, traces
 from rigidfluid.taylor_hood.elements.surfaces import Surfaces
 
 
 class ScalarSurfaces:
-    """Values of the scalar = P · (free values, one of each lumped body) + held ones.
+    """Values of the scalar = P · (free values, one of each lumped body, those inside bodies that conduct) + held ones.
 
     Parameters
     ----------
@@ -26,10 +29,14 @@ class ScalarSurfaces:
         Nodes on bodies and faces.
     mesh : Mesh
         Its facets say where they are.
+    insides : mapping of int to InsideSpace
+        Elements inside the bodies that conduct, by their numbers.
     """
 
-    def __init__(self, problem: ScalarProblem, surfaces: Surfaces, mesh: Mesh) -> None:
-        self._problem, self.faces = problem, surfaces.faces
+    def __init__(
+        self, problem: ScalarProblem, surfaces: Surfaces, mesh: Mesh, insides: Mapping[int, InsideSpace]
+    ) -> None:
+        self._problem, self.faces, self._insides = problem, surfaces.faces, insides
         self.first_face = len(surfaces.body_nodes)
         numbering, nodes = surfaces.numbering, [*surfaces.body_nodes, *(face.nodes for face in surfaces.faces)]
         self.nodes: list[IntArray] = nodes
@@ -39,21 +46,21 @@ class ScalarSurfaces:
         self.owner = np.full(numbering.nodes, -1)
         """Surface that fixes the value of each node; -1 where it is free (nodes,)."""
         for surface in reversed(range(len(nodes))):
-            if problem.conditions[surface].is_lumped or self._holds(surface):
+            if problem.conditions[surface].is_solved or self._holds(surface):
                 self.owner[nodes[surface]] = surface
         self._place(surfaces.originals)
 
     def _holds(self, surface: int) -> bool:
         """Tell whether the surface holds a value: one through which the fluid goes as it likes does not."""
         given = self._problem.conditions[surface]
-        return given.value is not None and not given.is_lumped and self._open_face(surface) is None
+        return given.value is not None and not given.is_solved and self._open_face(surface) is None
 
     def _open_face(self, surface: int) -> Face | None:
         face = self.faces[surface - self.first_face] if surface >= self.first_face else None
         return face if face is not None and face.condition.is_open else None
 
     def _place(self, originals: IntArray) -> None:
-        """Lay out P: free nodes first, then lumped bodies; images have the values of their originals."""
+        """Lay out P: free nodes first, then lumped bodies, then insides; images have the values of their originals."""
         count, lumped = len(self.owner), self.lumped
         column = np.full(count, -1)
         free = np.flatnonzero((self.owner < 0) & (originals == np.arange(count)))
@@ -63,10 +70,28 @@ class ScalarSurfaces:
         column = np.where((self.owner < 0) & (originals != np.arange(count)), column[originals], column)
         rows = np.flatnonzero(column >= 0)
         entries = np.ones(len(rows)), (rows, column[rows])
-        self.unknowns, self.first_lumped = len(free) + len(lumped), len(free)
-        self.prolongation = sparse.csr_array(entries, shape=(count, self.unknowns))
+        self.first_lumped, self.first_inside = len(free), len(free) + len(lumped)
+        self._unknowns = self.first_inside + sum(inside.nodes for inside in self._insides.values())
+        self._prolongation = sparse.csr_array(entries, shape=(count, self._unknowns))
         self.representative = np.concatenate([free, [self.nodes[body][0] for body in lumped]]).astype(np.int64)
-        """A node with the value of each unknown (unknowns,)."""
+        """A node with the value of each unknown but those inside bodies (first_inside,)."""
+
+    def prolongation(self, node_points: FloatArray, pose: Pose) -> sparse.csr_array:
+        """P (nodes, unknowns) where nodes are at ``node_points`` (nodes, d) and bodies, or their images, at ``pose``.
+
+        Nodes on a body that conducts follow what is inside of it at their place.
+        """
+        found, first = self._prolongation, self.first_inside
+        for body, inside in self._insides.items():
+            facets = self.facet_nodes[body]
+            basis = partial(_basis_in_world, inside, pose, body)
+            nodes, rows = traces(facets, node_points[facets], basis)
+            entries = rows.tocoo()
+            mine = self.owner[nodes[entries.row]] == body
+            places = nodes[entries.row][mine], first + entries.col[mine]
+            found = found + sparse.csr_array((entries.data[mine], places), shape=found.shape)
+            first += inside.nodes
+        return found
 
     @cached_property
     def lumped(self) -> IntArray:
@@ -76,7 +101,7 @@ class ScalarSurfaces:
     @cached_property
     def is_held(self) -> BoolArray:
         """Tell whether the value of each node is given (nodes,)."""
-        return np.asarray((self.owner >= 0) & ~np.isin(self.owner, self.lumped))
+        return np.asarray((self.owner >= 0) & ~np.isin(self.owner, [*self.lumped, *self._insides]))
 
     @cached_property
     def capacities(self) -> FloatArray:
@@ -97,12 +122,12 @@ class ScalarSurfaces:
         values = np.zeros(len(node_points))
         for surface, condition in enumerate(self._problem.conditions):
             nodes = np.flatnonzero(self.owner == surface)
-            if condition.value is not None and not condition.is_lumped and len(nodes):
+            if condition.value is not None and not condition.is_solved and len(nodes):
                 values[nodes] = condition.value(time, node_points[nodes])
         return values
 
     def start_values(self, node_points: FloatArray) -> FloatArray:
-        """Values (nodes,) at the start."""
+        """Values (nodes,) at the start; zero on bodies that conduct."""
         problem, held = self._problem, self.held_values(0.0, node_points)
         values = np.where(self.owner < 0, problem.initial(0.0, node_points), held)
         for body in self.lumped:
@@ -135,6 +160,11 @@ class ScalarSurfaces:
             whole = measure.sum()
             found[surface] = np.sum(measure * (values[nodes] @ shapes.T)) / whole if whole > 0.0 else 0.0
         return found
+
+
+def _basis_in_world(inside: InsideSpace, pose: Pose, body: int, points: FloatArray) -> sparse.csr_array:
+    """Functions inside a body at ``points`` (N, d) of the world, (N, nodes)."""
+    return inside.basis(to_body_frame(pose, body, points))
 
 
 def _measured(facet_points: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -5,7 +5,8 @@ With θ = T - c, c the mean of T, the step solves
 d₀(θⁿ⁺¹, v)ₙ₊₁ + d₁(θⁿ, v)ₙ + d₂(θⁿ⁻¹, v)ₙ₋₁ - ((u - w)θⁿ⁺¹, ∇v) + κ(∇θⁿ⁺¹, ∇v) = (s, v) + ∮ q v,
 
 each product on the mesh of its own time, whose test functions move with it. The test v = 1 gives the balance of the
-content, and θ = 0 solves it, so that a constant stays one, whatever divergence the elements leave in u and w.
+content, and θ = 0 solves it, so that a constant stays one, whatever divergence the elements leave in u and w. Inside
+bodies that conduct c(d₀θⁿ⁺¹ + d₁θⁿ + d₂θⁿ⁻¹, v) + kκ(∇θⁿ⁺¹, ∇v) is added, v and θ on their surfaces being the fluid's.
 """
 
 from __future__ import annotations
@@ -13,7 +14,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 from scipy import sparse
@@ -21,13 +21,17 @@ from scipy import sparse
 from rigidfluid.core.fluid.scalar import ScalarProblem
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.scalar_account import ScalarAccount
-from rigidfluid.core.model.types import FluidState, Mesh, Step
+from rigidfluid.core.model.types import FluidState, Mesh, Pose, Step
 from rigidfluid.taylor_hood.elements.face import Face
-from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.elements.scalar_assembly import ScalarAssembly
 from rigidfluid.taylor_hood.elements.scalar_surfaces import ScalarSurfaces
+from rigidfluid.taylor_hood.stepping.insides import Insides
 
 NAMES = ("scalar", "scalar_previous")
 """Arrays of the fluid's state at the nodes (nodes,)."""
+
+INSIDE = ("scalar_inside", "scalar_inside_previous")
+"""Arrays of the fluid's state at the nodes inside bodies that conduct, if there are any."""
 
 REMESHING = "scalar_remeshing"
 """Array of the fluid's state with the content that corrections at new meshes have restored so far, in absolute
@@ -40,27 +44,15 @@ Solve = Callable[[sparse.csr_array, FloatArray, float], FloatArray]
 """x with ‖b - A x‖ ≤ tolerance, of a matrix A, a right side b and the tolerance; raises StepRejected."""
 
 
-class ScalarAssembly(Protocol):
-    """Integrals over the cells of one topology that the scalar needs."""
-
-    numbering: Numbering
-
-    def scalar_matrix(
-        self, points: FloatArray, inertia: float, diffusivity: float, flow: FloatArray
-    ) -> sparse.csr_array:
-        """Matrix of inertia (T, v) - (c T, ∇v) + diffusivity (∇T, ∇v), with the ``flow`` c (nodes, d)."""
-
-    def mass_times(self, points: FloatArray, field: FloatArray) -> FloatArray:
-        """(field, v) for every nodal test function, (nodes, d)."""
-
-
 @dataclass(frozen=True, eq=False)
 class ScalarEquations:
-    """Equation of the scalar on one topology: its ``problem``, ``assembly`` and ``surfaces``, and what solves it."""
+    """Equation of the scalar on one topology: its ``problem``, ``assembly``, ``surfaces``, the ``insides`` of bodies,
+    and what solves it."""
 
     problem: ScalarProblem
     assembly: ScalarAssembly
     surfaces: ScalarSurfaces
+    insides: Insides
     solve: Solve
 
     def content_by_node(self, points: FloatArray, values: FloatArray) -> FloatArray:
@@ -101,15 +93,20 @@ class _System:
     flow: FloatArray
 
 
-def start(equations: ScalarEquations, mesh: Mesh) -> FluidState:
-    """Arrays of the scalar in the fluid's state at the start."""
-    values = equations.surfaces.start_values(equations.assembly.numbering.node_points(mesh.geometry))
-    return {**dict.fromkeys(NAMES, values), REMESHING: np.zeros(())}
+def start(equations: ScalarEquations, mesh: Mesh, pose: Pose) -> FluidState:
+    """Arrays of the scalar in the fluid's state at the start, with the bodies, or their images, at ``pose``."""
+    surfaces, node_points = equations.surfaces, equations.assembly.numbering.node_points(mesh.geometry)
+    values, inside = surfaces.start_values(node_points), equations.insides.start_values(pose)
+    state = {**dict.fromkeys(NAMES, values), REMESHING: np.zeros(())}
+    if not equations.insides:
+        return state
+    values += surfaces.prolongation(node_points, pose)[:, surfaces.first_inside :] @ inside
+    return state | dict.fromkeys(INSIDE, inside)
 
 
 def carried(fluid: FluidState) -> FluidState:
     """The same scalar one step later, of a step that is not to be accepted."""
-    return {name: fluid[name] for name in (*NAMES, REMESHING)}
+    return {name: fluid[name] for name in (*NAMES, *INSIDE, REMESHING) if name in fluid}
 
 
 def scalar_step(
@@ -118,9 +115,12 @@ def scalar_step(
     """Arrays of the scalar after a step in which the fluid has got this ``velocity`` (nodes, d), and their account."""
     moment = _Moment(equations, fluid, mesh, step)
     system = _system(moment, velocity)
-    theta = _solution(moment, system)
-    account = _account(moment, system, theta)
-    return {**carried(fluid), "scalar": theta + system.constant, "scalar_previous": fluid["scalar"]}, account
+    theta, inside = _solution(moment, system)
+    account = _account(moment, system, theta, inside)
+    after = {**carried(fluid), "scalar": theta + system.constant, "scalar_previous": fluid["scalar"]}
+    if equations.insides:
+        after |= dict(zip(INSIDE, (inside + system.constant, fluid[INSIDE[0]]), strict=True))
+    return after, account
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,6 +148,10 @@ class _Moment:
         d0, d1, d2 = self.step.derivative
         rate = d0 * self.points + d1 * self.mesh.geometry + d2 * self.fluid["points_previous"]
         return self.equations.assembly.numbering.node_points(rate)
+
+    def inside(self, constant: float) -> list[FloatArray]:
+        """θ = T - ``constant`` at the nodes inside bodies, now and one step earlier."""
+        return [self.fluid[name] - constant for name in INSIDE] if self.equations.insides else [np.zeros(0)] * 2
 
     def history(self, constant: float) -> FloatArray:
         """d₁(θⁿ, v) + d₂(θⁿ⁻¹, v) of θ = T - ``constant``, each on the mesh of its time (nodes,)."""
@@ -191,41 +195,56 @@ def _passage(moment: _Moment, number: int, face: Face, flow: FloatArray, constan
     return _Passage(outflow, inflow)
 
 
-def _solution(moment: _Moment, system: _System) -> FloatArray:
-    """θ (nodes,), from its extrapolation in time onwards."""
-    surfaces, step = moment.equations.surfaces, moment.step
+def _solution(moment: _Moment, system: _System) -> tuple[FloatArray, FloatArray]:
+    """θ (nodes,) and θ at the nodes inside bodies, from their extrapolation in time onwards."""
+    surfaces, insides, step = moment.equations.surfaces, moment.equations.insides, moment.step
     d0, d1, d2 = step.derivative
     now, past = (moment.fluid[name] - system.constant for name in NAMES)
+    inside_now, inside_past = moment.inside(system.constant)
     held = surfaces.held_values(step.time, moment.node_points)
     held = np.where(surfaces.is_held, held - system.constant, 0.0)
-    spread, first = surfaces.prolongation, surfaces.first_lumped
+    spread, first, last = (
+        surfaces.prolongation(moment.node_points, step.pose),
+        surfaces.first_lumped,
+        surfaces.first_inside,
+    )
     body = surfaces.representative[first:]
     own = np.concatenate([np.zeros(first), d0 * surfaces.capacities])
-    matrix = sparse.csr_array(spread.T @ system.matrix @ spread + sparse.diags_array(own))
+    conducting = d0 * insides.capacity + insides.conductance
+    of_bodies = sparse.block_diag([sparse.diags_array(own), conducting]) if insides else sparse.diags_array(own)
+    matrix = sparse.csr_array(spread.T @ system.matrix @ spread + of_bodies)
     right_side = spread.T @ (system.load - system.matrix @ held)
-    right_side[first:] -= surfaces.capacities * (d1 * now[body] + d2 * past[body])
-    guess = (step.extrapolation @ np.stack([now, past]))[surfaces.representative]
+    right_side[first:last] -= surfaces.capacities * (d1 * now[body] + d2 * past[body])
+    right_side[last:] -= insides.capacity @ (d1 * inside_now + d2 * inside_past)
+    guess = np.concatenate([
+        (step.extrapolation @ np.stack([now, past]))[surfaces.representative],
+        step.extrapolation @ np.stack([inside_now, inside_past]),
+    ])  # fmt: skip
     scale = max(float(np.linalg.norm(right_side)), float(np.linalg.norm(matrix @ guess)))
     correction = moment.equations.solve(matrix, right_side - matrix @ guess, _TOLERANCE * scale)
-    return np.asarray(spread @ (guess + correction) + held)
+    found = guess + correction
+    return np.asarray(spread @ found + held), found[last:]
 
 
-def _account(moment: _Moment, system: _System, theta: FloatArray) -> ScalarAccount:
-    """Balance at the end of a step whose solution is ``theta`` (nodes,)."""
+def _account(moment: _Moment, system: _System, theta: FloatArray, inside: FloatArray) -> ScalarAccount:
+    """Balance at the end of a step whose solution is ``theta`` (nodes,), and ``inside`` at nodes in bodies."""
     equations, values = moment.equations, theta + system.constant
     flux, source = _fluxes(moment, system, theta), float(system.sources.sum())
     content = float(equations.content_by_node(moment.points, values).sum())
     rate = float(moment.step.derivative[0] * content + moment.history(0.0).sum())
+    every = np.concatenate([values, inside + system.constant])
+    value = equations.surfaces.means(moment.node_points, values)
     return ScalarAccount(
         content=content,
         rate=rate,
         source=source,
         imbalance=rate - float(flux.sum()) - source,
-        least=float(values.min()),
-        greatest=float(values.max()),
+        least=float(every.min()),
+        greatest=float(every.max()),
         remeshing=float(moment.fluid[REMESHING]),
         flux=flux,
-        value=equations.surfaces.means(moment.node_points, values),
+        value=value,
+        inside=equations.insides.means(value, inside + system.constant),
     )
 
 
