@@ -3,8 +3,13 @@
 import numpy as np
 from falling import falling_disk
 
+from rigidfluid.bodies.sphere import Sphere
+from rigidfluid.core.mesh.generation.inside import inside_mesh
 from rigidfluid.core.mesh.location import CellFinder, locate
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.run.simulation import Simulation
+from rigidfluid.taylor_hood.elements.location import located, quadratic_basis
+from rigidfluid.taylor_hood.elements.numbering import Numbering
 
 
 def test_points_are_found_in_a_graded_mesh():
@@ -31,3 +36,15 @@ def test_images_of_points_are_found_any_period_away():
     beside = np.array([[1.0, 4.0], [3.0, 4.0]])  # in the disk, so that its image is nearest: many cells are tried
     ahead = CellFinder(mesh.points, mesh.cells).periods_ahead(np.concatenate([targets, beside]), ways)
     np.testing.assert_array_equal(ahead, [*periods, [0, 0], [-1, 0]])
+
+
+def test_points_on_a_ball_are_found_in_the_curved_cells_beside_them():
+    """In cells farther away the quadratic map seems to reach them, where its coordinates do not sum to 1."""
+    mesh = inside_mesh(Sphere(Sphere.Options(radius=0.4), 3), Sizes(0.18, 0.18), 60.0)
+    numbering = Numbering.from_mesh(mesh)
+    targets = np.random.default_rng(0).normal(size=(500, 3))
+    targets *= 0.4 / np.linalg.norm(targets, axis=1, keepdims=True)
+    cell, coordinates = located(CellFinder(mesh.points, mesh.cells), numbering, mesh.geometry, targets)
+    nodes = numbering.node_points(mesh.geometry)[numbering.cell_nodes[cell]]
+    found = np.einsum("nb,nbd->nd", quadratic_basis(coordinates), nodes)
+    np.testing.assert_allclose(found, targets, atol=1e-3)

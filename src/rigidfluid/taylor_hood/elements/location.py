@@ -12,6 +12,8 @@ from rigidfluid.taylor_hood.elements.numbering import EDGES, Numbering
 _ITERATIONS, _ENOUGH = 30, 1e-14
 _BEYOND = 0.2
 """So far outside a curved cell, in its coordinates, its map is trusted."""
+_REACHED = 1e-8
+"""Last change of coordinates, and difference of their sum from 1, with which a map has reached its target."""
 _NEIGHBOURS = 32
 
 
@@ -38,25 +40,25 @@ def locate_on_curves(nodes: FloatArray, guess: IntArray, targets: FloatArray) ->
     ``nodes`` (C, b, d) of all curved cells; ``guess`` (N,): the one whose straight cell holds the target. In 3D the
     faces between two curved cells are curved too, so that a target near one may be the neighbour's.
     """
-    cell, found = guess.copy(), _invert_maps(nodes[guess], targets)
-    astray = np.flatnonzero(found.min(axis=1) < INSIDE)
+    cell, (found, depth) = guess.copy(), _invert_maps(nodes[guess], targets)
+    astray = np.flatnonzero(depth < INSIDE)
     if len(astray):
         corners = targets.shape[1] + 1
         count = min(_NEIGHBOURS, len(nodes))
         _, near = scipy.spatial.cKDTree(nodes[:, :corners].mean(axis=1)).query(targets[astray], k=count)
         near = near.reshape(len(astray), count)
-        tried = _invert_maps(nodes[near.ravel()], np.repeat(targets[astray], count, axis=0))
-        tried = tried.reshape(*near.shape, corners)
-        best = np.argmax(tried.min(axis=2), axis=1)
+        tried, depths = _invert_maps(nodes[near.ravel()], np.repeat(targets[astray], count, axis=0))
+        tried, depths = tried.reshape(*near.shape, corners), depths.reshape(near.shape)
+        best = np.argmax(depths, axis=1)
         rows = np.arange(len(astray))
-        better = tried[rows, best].min(axis=1) > found[astray].min(axis=1)
+        better = depths[rows, best] > depth[astray]
         cell[astray[better]], found[astray[better]] = near[rows, best][better], tried[rows, best][better]
     return cell, move_inside(found)
 
 
-def _invert_maps(nodes: FloatArray, targets: FloatArray) -> FloatArray:
+def _invert_maps(nodes: FloatArray, targets: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Coordinates (N, d+1) where the quadratic maps of cells with ``nodes`` (N, b, d) reach ``targets`` (N, d), by
-    Newton's method with the straight cells' matrices."""
+    Newton's method with the straight cells' matrices; and the least of each (N,), -inf where they do not reach it."""
     d = targets.shape[1]
     inverse = np.linalg.inv(np.swapaxes(nodes[:, 1 : d + 1] - nodes[:, :1], 1, 2))
     coordinates = np.full((len(targets), d + 1), 1.0 / (d + 1))
@@ -67,7 +69,9 @@ def _invert_maps(nodes: FloatArray, targets: FloatArray) -> FloatArray:
         coordinates = np.clip(coordinates, -_BEYOND, 1.0 + _BEYOND)
         if np.abs(rest).max(initial=0.0) < _ENOUGH:
             break
-    return coordinates
+    sum_is_one = np.abs(coordinates.sum(axis=1) - 1.0) < _REACHED  # which a clipped coordinate may have spoilt
+    reached = sum_is_one & (np.abs(rest).max(axis=1, initial=0.0) < _REACHED)
+    return coordinates, np.where(reached, coordinates.min(axis=1), -np.inf)
 
 
 def barycentric(points: FloatArray, simplices: IntArray, targets: FloatArray) -> FloatArray:
