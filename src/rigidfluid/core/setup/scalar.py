@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import field, replace
 from functools import cache, partial
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -190,6 +191,9 @@ def _check_buoyancy(model: Model, fluid: Fluid, scalar: Scalar) -> None:
 
 def _check_faces(model: Model, scalar: Scalar) -> None:
     """Refuse conditions on no surface of the domain, and velocities that bring fluid in with nobody knows what."""
+    for given, key in product(scalar.on_faces.values(), ("capacity", "conductivity")):
+        if getattr(given, key) is not None:
+            raise SceneError(f"{given.field}.{key}", getattr(given, key), "one of bodies alone", "Leave it out.")
     _check_surfaces(scalar.on_faces, [piece.name for piece in model.domain.pieces])
     for number in (number for pair in model.domain.periodic for number in pair):
         name = model.domain.names[number]
@@ -197,12 +201,8 @@ def _check_faces(model: Model, scalar: Scalar) -> None:
             found, remedy = f"{name!r}, which is periodic", "Leave the table out: what leaves there comes in again."
             raise SceneError(f"{scalar.on_faces[name].field}.on", found, "a surface where the fluid ends", remedy)
     for condition in model.conditions:
-        given = scalar.on_faces.get(condition.name)
-        for key in ("capacity", "conductivity"):
-            own = None if given is None else getattr(given, key)
-            if given is not None and own is not None:
-                raise SceneError(f"{given.field}.{key}", own, "one of bodies alone", "Leave it out.")
-        if given is None and condition.passes and condition.prescribes_normal:
+        on_face = scalar.on_faces.get(condition.name)
+        if on_face is None and condition.passes and condition.prescribes_normal:
             found = f"nothing on {condition.name!r}, which the fluid passes"
             allowed = "a value of what comes in, or flux = 0 of what goes out"
             raise SceneError("scalar.boundary", found, allowed, "Add a table [[scalar.boundary]].")
