@@ -3,135 +3,47 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
 from scipy import sparse
-from scipy.optimize import brentq
-from scipy.special import j0, j1, y0, y1
+from two_layers import (
+    DIFFUSIVITY,
+    ball,
+    conducting,
+    error_outside,
+    exact_outside,
+    first,
+    gradient_found,
+    gradient_inside,
+    held,
+    in_linear_field,
+    inside,
+    left_of_mode,
+    node_points,
+    nothing,
+    round_mesh,
+    started,
+)
 
 from rigidfluid.backends.scikit_fem import ScikitFem
-from rigidfluid.bodies.sphere import Sphere
-from rigidfluid.core.fluid.conditions import PrescribedVelocity
-from rigidfluid.core.fluid.conduction import Conduction, Inside
 from rigidfluid.core.fluid.scalar import NO_FLUX, ScalarCondition, ScalarProblem
-from rigidfluid.core.mechanics.frames import to_world
-from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.generation.curved_edges import with_curved_edges
-from rigidfluid.core.mesh.generation.inside import InsideOfBody, inside_mesh
-from rigidfluid.core.mesh.generation.meshing import generate_mesh
-from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.model.types import Pose
 from rigidfluid.taylor_hood.elements.inside_space import InsideSpace, traces
 from rigidfluid.testing.fluid.boxes import balls_pose, box_with_balls, carried, finer_box_with_balls
 from rigidfluid.testing.fluid.exact import problem
 from rigidfluid.testing.fluid.flow import Bodies, Flow, size
 
-DIFFUSIVITY, BALL, WALL = 0.3, 0.4, 1.0
-TURNED = 0.3
-"""Angle by which a body's mesh is turned from the fluid's, so that they do not match."""
-
-
-def ball(radius, dimension):
-    return Sphere(Sphere.Options(radius=radius), dimension)
-
-
-@cache
-def inside(radius, dimension, length, order=2):
-    mesh = inside_mesh(ball(radius, dimension), Sizes(length, length, 0.2, order=order), 60.0)
-    if mesh.curved is None:
-        return Inside(mesh.points, mesh.cells, np.zeros((0, 2), int), np.zeros((0, dimension)))
-    return Inside(mesh.points, mesh.cells, mesh.curved.vertices, mesh.curved.middles)
-
-
-def conducting(conductivity, capacity=1.0, radius=BALL, dimension=2, length=0.1, order=2, value=None):
-    """A ball that conducts; the capacity is over that of as much fluid."""
-    whole = capacity * ball(radius, dimension).volume
-    conduction = Conduction(conductivity, whole, lambda: inside(radius, dimension, length, order))
-    return ScalarCondition(value=value, conduction=conduction)
-
-
-@cache
-def round_mesh(dimension, length, empty=False):
-    """Fluid in a ball, around another one in its middle."""
-    bodies, turn = [] if empty else [ball(BALL, dimension)], np.eye(1 if dimension == 2 else 4)[0]
-    turn = np.zeros(1) if dimension == 2 else turn
-    pose = Pose(np.zeros((len(bodies), dimension)), np.tile(turn, (len(bodies), 1)))
-    around = FluidDomain(bodies, pose, InsideOfBody(ball(WALL, dimension), length), ())
-    return with_curved_edges(generate_mesh(around, Sizes(length, length, 0.2)), around)
-
-
-def turned(dimension):
-    """Pose of the body in the middle."""
-    turn = [TURNED] if dimension == 2 else [np.cos(TURNED), np.sin(TURNED), 0.0, 0.0]
-    return Pose(np.zeros((1, dimension)), np.array([turn]))
-
-
-def started(mesh, *conditions, initial, velocity=None, pose=None, **given):
-    """A flow in the round wall, around a body or none; on other surfaces nothing goes through."""
-    dimension = mesh.points.shape[1]
-    posed = problem(dimension, bodies=len(conditions) - 1)
-    wall = replace(posed.conditions[0], name="wall", surface=len(conditions) - 1)
-    if velocity is not None:
-        wall = PrescribedVelocity(len(conditions) - 1, "wall", None, value=velocity)
-    scalar = ScalarProblem(DIFFUSIVITY, initial, conditions)
-    posed = replace(posed, conditions=(wall,), scalar=scalar, initial=velocity or "rest")
-    pose = pose or (turned(dimension) if len(conditions) > 1 else Pose(np.zeros((0, dimension)), np.zeros((0, 1))))
-    return Flow.start(ScikitFem(ScikitFem.Options(), posed), mesh, pose, **given)
-
-
-def first(time, points):
-    return points[:, 0]
-
-
-def held(value):
-    return ScalarCondition(value=value)
-
 
 def constant(number):
     return lambda time, points: np.full(len(points), float(number))
-
-
-def gradient_inside(conductivity, dimension):
-    """Of a ball in a round wall that holds x: A in T = A x inside, (B + C/rᵈ) x outside."""
-    d, ratio = dimension, (BALL / WALL) ** dimension
-    return d / (d - 1.0 + conductivity + (1.0 - conductivity) * ratio)
-
-
-def exact_outside(conductivity, points):
-    d = points.shape[1]
-    inner = gradient_inside(conductivity, d)
-    part = inner * (1.0 - conductivity) / d
-    return (inner - part + part * BALL**d / np.linalg.norm(points, axis=1) ** d) * points[:, 0]
-
-
-def gradient_found(flow):
-    """Mean gradient along x of the values inside."""
-    insides, pose = flow.backend._insides, flow.pose
-    along = to_world(pose, 0, insides.spaces[0].node_points)[:, 0]
-    weighted = insides.capacity @ along
-    return float(weighted @ flow.fluid["scalar_inside"] / (weighted @ along))
-
-
-def error_outside(flow, exact):
-    """Root of the mean square of the difference from ``exact`` values (nodes,)."""
-    equations = flow.backend._scalar_equations(flow.mesh)
-    return np.sqrt(equations.mean(flow.mesh.geometry, (flow.fluid["scalar"] - exact) ** 2))
-
-
-def node_points(flow):
-    return flow.backend.numbering_of(flow.mesh).node_points(flow.mesh.geometry)
 
 
 @pytest.mark.parametrize("conductivity", [0.1, 10.0])
 def test_a_disk_in_a_linear_field_is_of_order_three(conductivity):
     gradients, errors = [], []
     for length in (0.2, 0.1, 0.05):
-        flow = started(
-            round_mesh(2, length), conducting(conductivity, length=length), held(first), initial=constant(0.0)
-        )
-        flow = flow.after(None)
+        flow = in_linear_field(conductivity, length)
         gradients.append(abs(gradient_found(flow) - gradient_inside(conductivity, 2)))
         errors.append(error_outside(flow, exact_outside(conductivity, node_points(flow))))
     assert np.log2(gradients[0] / gradients[2]) > 6.5, gradients
@@ -139,7 +51,7 @@ def test_a_disk_in_a_linear_field_is_of_order_three(conductivity):
 
 
 def test_a_disk_that_conducts_as_the_fluid_does_is_not_seen_by_a_linear_field():
-    flow = started(round_mesh(2, 0.1), conducting(1.0), held(first), initial=constant(0.0)).after(None)
+    flow = in_linear_field(1.0, 0.1)
     assert gradient_found(flow) == pytest.approx(1.0, abs=5e-6)
     np.testing.assert_allclose(flow.fluid["scalar"], node_points(flow)[:, 0], atol=5e-4)
     np.testing.assert_allclose(flow.advance.scalar.flux, 0.0, atol=1e-10)
@@ -147,9 +59,7 @@ def test_a_disk_that_conducts_as_the_fluid_does_is_not_seen_by_a_linear_field():
 
 @pytest.mark.parametrize("conductivity", [0.1, 10.0])
 def test_a_ball_has_the_gradient_of_theory(conductivity):
-    length = 0.35
-    condition = conducting(conductivity, dimension=3, length=length)
-    flow = started(round_mesh(3, length), condition, held(first), initial=constant(0.0)).after(None)
+    flow = in_linear_field(conductivity, 0.35, dimension=3)
     assert gradient_found(flow) == pytest.approx(gradient_inside(conductivity, 3), rel=0.015)
 
 
@@ -162,7 +72,7 @@ def test_a_disk_of_the_fluids_properties_cools_as_the_fluid_would():
     samples = np.random.default_rng(0).normal(size=(30, 2))
     samples *= 0.7 / np.linalg.norm(samples, axis=1, keepdims=True)
     found = []
-    for conditions in ((conducting(1.0), held(constant(0.0))), (held(constant(0.0)),)):
+    for conditions in ((conducting(1.0), held(nothing)), (held(nothing),)):
         flow = started(round_mesh(2, 0.1, empty=len(conditions) == 1), *conditions, initial=hill)
         for _ in range(10):
             flow = flow.after(0.05)
@@ -172,46 +82,10 @@ def test_a_disk_of_the_fluids_properties_cools_as_the_fluid_would():
     assert flux == pytest.approx(other_flux, rel=1e-4)
 
 
-def slowest_mode(conductivity, capacity):
-    """Rate λ of the slowest mode round the axis, c∂T/∂t = kκ∇²T inside and ∂T/∂t = κ∇²T outside, and the mode."""
-
-    def parts(rate):
-        inner, outer = np.sqrt(rate * capacity / (conductivity * DIFFUSIVITY)), np.sqrt(rate / DIFFUSIVITY)
-        layers = np.array([
-            [j0(outer * BALL), y0(outer * BALL)],
-            [outer * j1(outer * BALL), outer * y1(outer * BALL)],
-        ])  # fmt: skip
-        at_body = np.array([j0(inner * BALL), conductivity * inner * j1(inner * BALL)])
-        return inner, outer, np.linalg.solve(layers, at_body)
-
-    def at_wall(rate):
-        _, outer, weights = parts(rate)
-        return weights @ [j0(outer * WALL), y0(outer * WALL)]
-
-    rates = np.linspace(0.01, 4.0, 400)
-    values = np.array([at_wall(rate) for rate in rates])
-    bracket = np.flatnonzero(values[:-1] * values[1:] < 0.0)[0]
-    rate = brentq(at_wall, rates[bracket], rates[bracket + 1], xtol=1e-14)
-    inner, outer, weights = parts(rate)
-
-    def mode(time, points):
-        r = np.linalg.norm(points, axis=1)
-        outside = weights[0] * j0(outer * r) + weights[1] * y0(np.maximum(outer * r, 1e-3))
-        return np.where(r < BALL, j0(inner * r), outside)
-
-    return rate, mode
-
-
 @pytest.mark.parametrize(("conductivity", "capacity"), [(0.2, 0.5), (5.0, 2.0)])
 def test_the_slowest_mode_of_two_layers_is_of_order_two_in_time(conductivity, capacity):
-    rate, mode = slowest_mode(conductivity, capacity)
-    condition, errors = conducting(conductivity, capacity, value=mode), []
-    for count in (4, 8, 16):
-        flow = started(round_mesh(2, 0.1), condition, held(constant(0.0)), initial=mode)
-        start = flow.backend._insides.means(np.zeros(2), flow.fluid["scalar_inside"])[0]
-        for _ in range(count):
-            flow = flow.after(0.8 / rate / count)
-        errors.append(abs(flow.advance.scalar.inside[0] / start - np.exp(-0.8)))
+    counts = 4, 8, 16
+    errors = [abs(left_of_mode(conductivity, capacity, 0.8, count, 0.1) - np.exp(-0.8)) for count in counts]
     assert errors[-1] < 2e-3
     assert np.log2(errors[1] / errors[2]) > 1.85, errors
 
@@ -340,7 +214,7 @@ def test_bodies_of_one_shape_share_their_elements():
 
 def on_facets(dimension):
     """A flow around balls, and the nodes of the facets on the first one with their places."""
-    flow, _ = stirred(dimension, initial=constant(0.0))
+    flow, _ = stirred(dimension, initial=nothing)
     facets = flow.backend.numbering_of(flow.mesh).facet_nodes(flow.mesh.facets[flow.mesh.markers == 0])
     return flow, facets, node_points(flow)[facets]
 
