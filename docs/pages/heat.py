@@ -306,9 +306,9 @@ ABOUT_FIELD = f"""
 ## A disk that conducts
 
 A disk of radius {BALL:g} in the middle of a round wall of radius {WALL:g} conducts inside, `conductivity` times as well
-as the fluid, which is at rest. The wall holds T = x. Theory has T = A x inside and (B + C/r²) x outside, with A = 2/(1 +
-k + (1 - k) a²/R²). The mesh inside is turned, so that it matches the fluid's nowhere. `gradient inside`: mean over the
-disk. `error outside`: root of the mean square. `cells`: their size everywhere.
+as the fluid, which is at rest. The wall holds T = x. Theory has T = A x inside and (B + C/r²) x outside, with
+A = 2/(1 + k + (1 - k) a²/R²). The mesh inside is turned, so that it matches the fluid's nowhere. `gradient inside`:
+mean over the disk. `error outside`: root of the mean square. `cells`: their size everywhere.
 
 ![Temperature in and around disks that conduct](heat_bodies.png)
 
@@ -317,10 +317,10 @@ ABOUT_MODE = f"""
 
 ## How fast two layers cool
 
-The same disk and fluid start with the slowest mode round the axis, of Bessel functions, while the wall is held at 0. Its
-rate is the root of the equation that both layers and the wall make, at a diffusivity of {DIFFUSIVITY:g} of the fluid.
-`rate`: that of the disk's mean over a time of {DECAY:g} over the exact rate, with cells of {LAYER_CELLS[-1]:g}. It is
-of second order in the step.
+The same disk and fluid start with the slowest mode round the axis, of Bessel functions, while the wall is held at 0.
+Its rate is the root of the equation that both layers and the wall make, at a diffusivity of {DIFFUSIVITY:g} of the
+fluid. `rate`: that of the disk's mean over a time of {DECAY:g} over the exact rate, with cells of {LAYER_CELLS[-1]:g}.
+It is of second order in the step.
 
 """
 ABOUT_FALL = """
@@ -329,7 +329,7 @@ ABOUT_FALL = """
 
 A disk with twice the capacity of the fluid starts at 1 in a fluid of 0; nothing goes through the walls. It falls, turns
 and cools through several new meshes of the fluid, while its own one stays. `greatest` value in disk and fluid in the
-end. `change of content`: the greatest of that of disk and fluid together, over it. With a high conductivity it is the disk
-of one value, without anything inside.
+end. `change of content`: the greatest of that of disk and fluid together, over it. With a high conductivity it is the
+disk of one value, without anything inside.
 
 """

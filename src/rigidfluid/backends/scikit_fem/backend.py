@@ -22,6 +22,7 @@ class ScikitFem(SparseBackend):
     refinements: ClassVar[bool] = True
     duals: ClassVar[bool] = True
     scalars: ClassVar[bool] = True
+    conduction: ClassVar[bool] = True
     requires: ClassVar[dict[str, str]] = {"skfem": "scikit-fem", "numba": "numba"}
 
     def assembly(self, numbering: Numbering) -> CompiledAssembly:

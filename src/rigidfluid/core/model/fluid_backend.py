@@ -69,6 +69,8 @@ class FluidBackend(Part):
     `driving`."""
     scalars: ClassVar[bool] = False
     """Tell whether it solves for a transported scalar; else such scenes are refused."""
+    conduction: ClassVar[bool] = False
+    """Tell whether it solves for a transported scalar inside bodies too; else bodies that conduct are refused."""
     stresslets: ClassVar[bool] = False
     """Tell whether it gives stresslets of bodies to a `Step` that wants them."""
     cell_errors: ClassVar[bool] = False

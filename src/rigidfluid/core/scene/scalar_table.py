@@ -37,12 +37,12 @@ class ScalarBodyTable(Table):
     capacity: Positive | None = Field(
         default=None,
         description="The body has one value, which changes by the flux: its heat capacity over that of as much fluid, "
-        "for bodies that conduct far better than the fluid [1]",
+        "for bodies that conduct far better than the fluid; with `conductivity` it has many [1]",
     )
     conductivity: Positive | None = Field(
         default=None,
-        description="The body, with a `capacity`, conducts inside, where `value` is that at the start: its "
-        "conductivity over the fluid's [1]",
+        description="Beside `capacity`: the scalar is solved for inside the body too, from `value` at the start on, "
+        "with the body's conductivity over the fluid's [1]",
     )
 
 

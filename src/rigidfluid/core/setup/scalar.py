@@ -166,7 +166,7 @@ def check_scalar(model: Model, fluid: Fluid) -> None:
         ask(_check_backend, model, fluid)
         ask(_check_buoyancy, model, fluid, scalar)
         ask(_check_faces, model, scalar)
-        ask(_check_bodies, model, scalar)
+        ask(_check_bodies, model, fluid, scalar)
         for key in _IN_THE_FLUID:
             ask(_check_function, model, f"scalar.{key}", getattr(scalar, key))
 
@@ -208,19 +208,24 @@ def _check_faces(model: Model, scalar: Scalar) -> None:
             raise SceneError("scalar.boundary", found, allowed, "Add a table [[scalar.boundary]].")
 
 
-def _check_bodies(model: Model, scalar: Scalar) -> None:
+def _check_bodies(model: Model, fluid: Fluid, scalar: Scalar) -> None:
     names = [body.name for body in model.all_bodies]
     _check_surfaces(scalar.on_bodies, names)
     for name, shape in zip(names, model.shapes, strict=True):
         given = scalar.on_bodies.get(name)
         if given is not None and given.conductivity is not None:
-            _check_inside(shape, given.field, given.conductivity)
+            _check_inside(shape, fluid, given.field, given.conductivity)
 
 
-def _check_inside(shape: Body, at: str, conductivity: float) -> None:
-    """Refuse a body that conducts whose inside no mesher can fill."""
+def _check_inside(shape: Body, fluid: Fluid, at: str, conductivity: float) -> None:
+    """Refuse a body that conducts where the backend does not solve for it, or no mesher can fill its inside."""
     from rigidfluid.core.mesh.generation.inside import can_be_filled
 
+    if not fluid.backend.part.conduction:
+        found = f"{conductivity:g} with backend {fluid.backend.part.name!r}"
+        raise SceneError(
+            f"{at}.conductivity", found, "a backend that solves inside bodies", "Choose backend = 'scikit-fem'."
+        )
     if not can_be_filled(shape):
         found = f"{conductivity:g} of a body of type {shape.name!r}"
         remedy = "Leave it out, so that the body has one value."

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import rigidfluid
-from rigidfluid.api import Fluid, Scalar, ScalarOnSurface, load_results, model_of
+from rigidfluid.api import Fluid, FluidBackend, Scalar, ScalarOnSurface, load_results, model_of
+from rigidfluid.backends.scikit_fem import ScikitFem
 from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.run.simulation import Simulation
@@ -153,6 +154,12 @@ def test_a_surface_of_the_domain_does_not_conduct() -> None:
 def test_other_backends_are_refused() -> None:
     with pytest.raises(SceneError, match=r"scalar: found one with backend 'dry'"):
         model_of(scene(fluid={"backend": "dry"}))
+
+
+def test_a_backend_that_does_not_solve_inside_bodies_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ScikitFem, "conduction", FluidBackend.conduction)
+    with pytest.raises(SceneError, match=r"scalar.body.0.conductivity: found 0.5 with backend 'scikit-fem'"):
+        model_of(scene())
 
 
 def test_a_shape_that_no_mesher_fills_is_refused_when_the_scene_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
