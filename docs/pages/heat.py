@@ -38,6 +38,7 @@ STREAM = (10.0, 20.0, 40.0)
 CELLS = (0.06, 0.03)
 GRID = 41
 """Points along each side at which temperatures of a picture are."""
+RADII = 26
 CONDUCTIVITIES = (0.1, 1.0, 10.0)
 LAYER_CELLS = (0.2, 0.1, 0.05)
 MODES = ((0.2, 0.5), (5.0, 2.0))
@@ -98,10 +99,14 @@ def _field(conductivity: float, cells: float) -> dict[str, Any]:
     row = {"conductivity": conductivity, "cells": cells, "gradient": gradient_found(flow), "error": error}
     if cells != LAYER_CELLS[-1]:
         return row
-    grid = np.stack(np.meshgrid(*[np.linspace(-WALL, WALL, GRID)] * 2), axis=2).reshape(-1, 2)
-    within = np.linalg.norm(grid, axis=1) <= WALL
-    values = np.where(within, values_at(flow, np.where(within[:, None], grid, 0.0)), np.nan).reshape(GRID, GRID)
-    return row | {"field": [[None if np.isnan(value) else round(value, 4) for value in line] for line in values]}
+    grid = _round_grid()
+    return row | {"field": np.round(values_at(flow, grid.reshape(-1, 2)).reshape(grid.shape[:2]), 4).tolist()}
+
+
+def _round_grid() -> FloatArray:
+    """Points on circles in the round wall (radii, angles, 2)."""
+    radius, angle = np.linspace(0.0, WALL, RADII)[:, None], np.linspace(0.0, 2.0 * np.pi, 2 * GRID)
+    return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=2)
 
 
 def _mode(conductivity: float, capacity: float, steps: int) -> dict[str, Any]:
@@ -126,7 +131,7 @@ def fall(conductivity: float | None) -> Scene:
             },
             "domain": {"lower": [0.0, 0.0], "upper": [1.0, 3.0]},
             "body": [{"name": "disk", **disk}],
-            "mesh": {"size": 0.2, "size_body": 0.05},
+            "mesh": {"size": 0.2, "size_body": 0.05, "remesh_every": 0.2},
             "time": {"end": 1.0, "step": 0.02},
             "output": {"every": 1.0},
         }
@@ -257,13 +262,14 @@ def _fall_row(row: dict[str, Any]) -> Iterator[str]:
 def _picture_of_fields(rows: list[dict[str, Any]]) -> Figure:
     """Isotherms in and around disks that conduct less than, as and more than the fluid."""
     figure = Figure(figsize=(8.0, 2.9), dpi=120, layout="constrained")
-    side, around = np.linspace(-WALL, WALL, GRID), np.linspace(0.0, 2.0 * np.pi, 200)
+    (x, y), around = np.moveaxis(_round_grid(), 2, 0), np.linspace(0.0, 2.0 * np.pi, 200)
     for axes, row in zip(figure.subplots(1, len(rows)), rows, strict=True):
-        values = np.array(row["field"], dtype=float)
-        levels = axes.contourf(side, side, values, np.linspace(-1.0, 1.0, 21), cmap=HOT_COLOURMAP)
-        axes.contour(side, side, values, np.linspace(-0.9, 0.9, 19), colors="white", linewidths=0.5, linestyles="solid")
+        values = np.array(row["field"])
+        levels = axes.contourf(x, y, values, np.linspace(-1.0, 1.0, 21), cmap=HOT_COLOURMAP)
+        axes.contour(x, y, values, np.linspace(-0.9, 0.9, 19), colors="white", linewidths=0.5, linestyles="solid")
         axes.plot(BALL * np.cos(around), BALL * np.sin(around), color="black", linewidth=1.0)
-        axes.set(title=f"conductivity {row['conductivity']:g}", aspect="equal", xticks=[], yticks=[])
+        axes.set(title=f"conductivity {row['conductivity']:g}", aspect="equal")
+        axes.set_axis_off()
     figure.colorbar(levels, ax=figure.axes, label="temperature", ticks=[-1.0, 0.0, 1.0])
     return figure
 
