@@ -60,7 +60,7 @@ SUBJECTS = {
         "dumbbell_in_shear": "Two balls on a rod turn in shear: period compared with the exact one",
     },
     "Heat": {
-        "heat": "A heated cavity, a hot cylinder and bodies that conduct: compared with published numbers and with theory",
+        "heat": "A heated cavity, a hot cylinder and bodies that conduct: compared with published numbers and theory",
         "cold_disk": "A cold disk falls: speed, flux and balances with many new meshes",
     },
     "Meshes and distances": {

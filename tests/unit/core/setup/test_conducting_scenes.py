@@ -115,6 +115,13 @@ def test_shapes_of_every_kind_conduct() -> None:
         ],
         time={"end": 0.03, "step": 0.01},
     )
+    system = assemble(model_of(shapes))
+    assert system.fluid is not None
+    assert system.fluid.scalar is not None
+    for body, condition in zip(system.bodies, system.fluid.scalar.conditions, strict=False):
+        assert condition.conduction is not None
+        farthest = np.linalg.norm(condition.conduction.inside().points, axis=1).max()
+        assert farthest == pytest.approx(body.bounding_radius)
     history = rigidfluid.run(shapes)
     fluxes = history.scalar_fluxes
     whole = history.scalar["content"].copy()
