@@ -24,6 +24,11 @@ _POINTS = 8
 """Points of Gauss' rule in each direction of a facet, across which the functions inside have bends."""
 
 
+_BESIDE = -2e-3
+"""Least coordinate in a cell of a point that counts as beside it: points on the body are a little outside of all cells,
+and to look for others takes most of a step in 3D."""
+
+
 class InsideSpace:
     """Elements on the cells of an ``inside``: their ``numbering``, ``geometry`` (vertices + K, d) and ``node_points``
     (nodes, d), in the body's frame [length]."""
@@ -41,7 +46,7 @@ class InsideSpace:
 
     def basis(self, points: FloatArray) -> sparse.csr_array:
         """Values (N, nodes) of the nodes' functions at ``points`` (N, d); outside those at the nearest place inside."""
-        cell, coordinates = located(self._finder, self.numbering, self.geometry, points)
+        cell, coordinates = located(self._finder, self.numbering, self.geometry, points, _BESIDE)
         columns = self.numbering.cell_nodes[cell]
         rows = np.repeat(np.arange(len(points)), columns.shape[1])
         entries = quadratic_basis(coordinates).ravel(), (rows, columns.ravel())

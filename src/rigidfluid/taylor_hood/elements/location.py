@@ -18,30 +18,33 @@ _NEIGHBOURS = 32
 
 
 def located(
-    finder: CellFinder, numbering: Numbering, geometry: FloatArray, targets: FloatArray
+    finder: CellFinder, numbering: Numbering, geometry: FloatArray, targets: FloatArray, least: float = INSIDE
 ) -> tuple[IntArray, FloatArray]:
     """The cell, straight or curved, of each target (N,) and its coordinates there (N, d+1), moved inside.
 
-    ``finder`` of the straight cells, ``geometry`` (vertices + K, d) of all.
+    ``finder`` of the straight cells, ``geometry`` (vertices + K, d) of all; ``least`` as for `locate_on_curves`.
     """
     cell, coordinates = finder.find(targets)
     at_curves = np.flatnonzero(np.isin(cell, numbering.curved_cells))
     if len(at_curves):
         guess = np.searchsorted(numbering.curved_cells, cell[at_curves])
         nodes = numbering.curved_cell_points(geometry)
-        found, coordinates[at_curves] = locate_on_curves(nodes, guess, targets[at_curves])
+        found, coordinates[at_curves] = locate_on_curves(nodes, guess, targets[at_curves], least)
         cell[at_curves] = numbering.curved_cells[found]
     return cell, coordinates
 
 
-def locate_on_curves(nodes: FloatArray, guess: IntArray, targets: FloatArray) -> tuple[IntArray, FloatArray]:
+def locate_on_curves(
+    nodes: FloatArray, guess: IntArray, targets: FloatArray, least: float = INSIDE
+) -> tuple[IntArray, FloatArray]:
     """The curved cell of each target (N,) and its coordinates in the cell's quadratic map (N, d+1), moved inside.
 
     ``nodes`` (C, b, d) of all curved cells; ``guess`` (N,): the one whose straight cell holds the target. In 3D the
-    faces between two curved cells are curved too, so that a target near one may be the neighbour's.
+    faces between two curved cells are curved too, so that a target near one may be the neighbour's, which is looked for
+    where a coordinate in the guessed cell is below ``least``.
     """
     cell, (found, depth) = guess.copy(), _invert_maps(nodes[guess], targets)
-    astray = np.flatnonzero(depth < INSIDE)
+    astray = np.flatnonzero(depth < least)
     if len(astray):
         corners = targets.shape[1] + 1
         count = min(_NEIGHBOURS, len(nodes))
