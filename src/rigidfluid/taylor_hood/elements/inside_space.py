@@ -20,9 +20,8 @@ from rigidfluid.taylor_hood.elements.facet_integrals import area_at_points
 from rigidfluid.taylor_hood.elements.location import located, quadratic_basis
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 
-_POINTS = 8
-"""Points of Gauss' rule in each direction of a facet, across which the functions inside have bends."""
-
+_POINTS = {2: 8, 3: 4}
+"""Points of Gauss' rule in each direction of a facet, by dimension; across it the functions inside have bends."""
 
 _BESIDE = -2e-3
 """Least coordinate in a cell of a point that counts as beside it: points on the body are a little outside of all cells,
@@ -61,7 +60,7 @@ def traces(
     ``facet_nodes`` (F, b) are at ``facet_points`` (F, b, d); ``basis`` gives functions at points, (P, functions).
     Quadratic functions stay as they are on flat facets.
     """
-    shapes, area = area_at_points(facet_points, _POINTS)
+    shapes, area = area_at_points(facet_points, _POINTS[facet_points.shape[2]])
     measure = np.linalg.norm(area, axis=2)
     where = np.einsum("qi,fid->fqd", shapes, facet_points)
     weighted = measure[:, :, None] * shapes
