@@ -62,7 +62,7 @@ SUBJECTS = {
     },
     "Heat": {
         "heat": "A heated cavity and a hot cylinder in a stream: Nusselt numbers compared with published ones",
-        "cold_disk": "A cold disk falls: speed, flux and balances with many new meshes",
+        "cold_disk": "A cold disk falls: speed, flux, balances with many new meshes, and paths by the Grashof number",
     },
     "Meshes and distances": {
         "seams": "Disks that cross periodic surfaces: paths from two places and in a longer channel, and momentum",
