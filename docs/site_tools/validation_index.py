@@ -52,6 +52,7 @@ SUBJECTS = {
     "Stokes flow and swimmers": {
         "periodic_arrays": "Drag in arrays of cylinders and spheres: compared with published tables",
         "materials": "Fluids whose viscosity varies: orders, drags between bounds, and their plastic limit",
+        "drag_in_materials": "Disks and spheres in Bingham and thinning fluids: compared with published drags",
         "settling_arrays": "Spheres that settle as a cubic array: speeds compared with published drags and speeds",
         "effective_viscosity": "Sheared suspensions: viscosity by walls and by stresslets, compared with Einstein's",
         "swimmer": "A three-sphere swimmer in 2D: distance per cycle compared with two other computations",
@@ -61,7 +62,7 @@ SUBJECTS = {
     },
     "Heat": {
         "heat": "A heated cavity, a hot cylinder and bodies that conduct: compared with published numbers and theory",
-        "cold_disk": "A cold disk falls: speed, flux and balances with many new meshes",
+        "cold_disk": "A cold disk falls: speed, flux, balances with many new meshes, and paths by the Grashof number",
     },
     "Meshes and distances": {
         "seams": "Disks that cross periodic surfaces: paths from two places and in a longer channel, and momentum",

@@ -148,3 +148,19 @@ DISK_SHARE = np.array(
     + [(0.7413, 0.2989), (0.7697, 0.2782), (0.7996, 0.2862), (0.8277, 0.2712), (0.8481, 0.2267), (0.8642, 0.1821)]
     + [(0.8793, 0.1375), (0.8909, 0.0939), (0.9061, 0.0490), (0.9317, 0.0089), (0.9732, 0.0006), (0.9997, 0.0002)]
 )
+
+# Drag on a sphere in a power-law fluid over 3πK(v/d)ⁿ⁻¹dv, by the exponent n: Gu and Tanner, J. Non-Newtonian
+# Fluid Mech. 17 (1985) 1. From memory: the paper was not at hand.
+SPHERE_IN_POWER_LAW = {0.9: 1.140, 0.8: 1.240, 0.7: 1.320, 0.6: 1.382, 0.5: 1.420}
+
+
+def cylinder_in_bingham_fluid(number: float) -> float:
+    """Drag over τ_y d at a Bingham ``number``: Tokpavi, Magnin and Jay, J. Non-Newtonian Fluid Mech. 154 (2008) 65, as
+    quoted in a test of Basilisk by A. Ghigo, a cylinder at different Bingham numbers."""
+    return float(11.98 + 20.43 * number**-0.68)
+
+
+def sphere_in_carreau_fluid(exponent: float, number: float) -> float:
+    """Drag over 3πμ₀dv at a Carreau ``number`` 2λv/d, without inertia, to 14 % of measurements: Chhabra and Uhlherr,
+    Rheol. Acta 19 (1980) 187. From memory, and as programs of others have it; the paper was not at hand."""
+    return float(1.0 + 0.65 * (exponent - 1.0) * number**0.2)
