@@ -28,7 +28,7 @@ from rigidfluid.core.output.stored_records import Misfit, load, load_value, stor
 from rigidfluid.core.output.tables import Prefix
 from rigidfluid.errors import OutputError
 
-FORMAT = 18
+FORMAT = 19
 """Number of the checkpoint's format, raised with each change of the records, the backend's memory or the tables'
 columns; files of other formats are refused."""
 

@@ -45,14 +45,14 @@ def test_a_flat_cell_is_in_a_film_between_two_surfaces_alone(surface: list[int],
 def test_rings_around_few_vertices_are_not_the_whole_mesh() -> None:
     grid = MeshTet.init_tensor(*(np.arange(21.0),) * 3)
     numbering = Numbering.from_mesh(Mesh(grid.p.T, grid.t.T, np.zeros((0, 3), dtype=np.int64), np.zeros(0, dtype=int)))
-    plate = np.flatnonzero(grid.p[2] == 0.0)
-    near = with_rings(numbering, plate)
-    assert grid.p[2, near].max() == RINGS
-    assert len(near) == (RINGS + 1) * len(plate)
-    middle = np.flatnonzero((grid.p == 10.0).all(axis=0))
+    slab = np.flatnonzero(grid.p[2] <= 3.0)
+    near = with_rings(numbering, slab)
+    assert grid.p[2, near].max() == 3.0 + RINGS
+    assert 4 * len(near) == (4 + RINGS) * len(slab)
+    middle = np.flatnonzero((np.abs(grid.p - 10.0) <= 1.0).all(axis=0))
     around = with_rings(numbering, middle)
-    np.testing.assert_array_equal(np.abs(grid.p[:, around] - 10.0).max(), 1.0)
-    assert 1 < len(around) <= MOST
+    np.testing.assert_array_equal(np.abs(grid.p[:, around] - 10.0).max(), 2.0)
+    assert len(middle) < len(around) <= MOST * len(middle)
     assert not len(with_rings(numbering, middle[:0]))
 
 
