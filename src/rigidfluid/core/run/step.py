@@ -173,7 +173,7 @@ def stored_energy(system: System, contacts: Contacts, motions: Pose, time: float
 
 def contact_energy(system: System, contacts: Contacts) -> float:
     """Energy stored in the contacts [energy]."""
-    if system.law is None or len(contacts) == 0:
+    if system.law is None or len(system.acting(contacts)) == 0:
         return 0.0
     return float(np.sum(system.law.energy(contacts)))
 
