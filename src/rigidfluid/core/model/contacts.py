@@ -20,7 +20,8 @@ def select(contacts: Contacts, chosen: IntArray | BoolArray) -> Contacts:
     are true."""
     if chosen.dtype.kind == "b" and chosen.all():
         return contacts
-    return Contacts(*[None if column is None else column[chosen] for column in _columns(contacts)])
+    taken: list[Any] = [None if column is None else column[chosen] for column in _columns(contacts)]
+    return Contacts(*taken)
 
 
 def joined(parts: Sequence[Contacts]) -> Contacts:

@@ -182,8 +182,9 @@ def _power(system: System, advance: Advance, step: Step, motions: Pose) -> Power
     """Power of a step [energy/time]: that which enters by the boundary, drives bodies and joints in the fluid, or is
     dissipated by fluid and dampers."""
     twist, where = prescribed_part(step)
-    control = -float(power(advance.hydrodynamic_wrench, twist)[where].sum())
-    control += float(advance.link_force @ step.links.rate)
+    control = float(advance.link_force @ step.links.rate)
+    if where.any():
+        control -= float(power(advance.hydrodynamic_wrench, twist)[where].sum())
     control += system.solved_joints.spring_power(motions, step.time)
     return Power(
         boundary=advance.boundary_power,
