@@ -86,16 +86,18 @@ def moment(arm: FloatArray, force: FloatArray) -> FloatArray:
 
 
 def lab_inertia(inertia: FloatArray, orientation: FloatArray) -> FloatArray:
-    """Inertia tensors in the lab frame R I Rᵀ (n, k, k), of ``inertia`` I in each body's frame [mass·length²]."""
+    """Inertia tensors in the lab frame R I Rᵀ (n, k, k), of ``inertia`` I in each body's frame [mass·length²]; so those
+    of added mass (n, d, d) [mass]."""
     if is_isotropic(inertia):
         return inertia
     rotation = rotation_matrices(orientation)
     return np.asarray(rotation @ inertia @ rotation.swapaxes(-1, -2))
 
 
-def is_isotropic(inertia: FloatArray) -> bool:
+def is_isotropic(tensor: FloatArray) -> bool:
     """Tell whether all tensors (n, k, k) are multiples of the identity, as those of balls: no rotation changes them."""
-    return inertia.shape[1] == 1 or not bool((inertia != inertia[:, :1, :1] * _IDENTITY).any())
+    size = tensor.shape[1]
+    return size == 1 or not bool((tensor != tensor[:, :1, :1] * _IDENTITY[:size, :size]).any())
 
 
 def angular_momentum(inertia: FloatArray, orientation: FloatArray, angular_velocity: FloatArray) -> FloatArray:
