@@ -36,7 +36,7 @@ def detect_contacts_and_gaps(system: System, pose: Pose, mesh: Mesh | None) -> t
 
 
 def interacting(system: System, contacts: Contacts) -> Contacts:
-    """Those of the contacts that are between separate bodies, and some law's, if there is any law."""
+    """Choose the contacts that are between separate bodies, and some law's, if there is any law."""
     if len(contacts) == 0:
         return contacts
     chosen = are_separate(system, contacts)

@@ -67,8 +67,9 @@ class SubstepPath:
     springs: TangentialSprings | None = None
 
     def advance(self, sight: Sight, contacts: Contacts) -> BodyStep:
-        """Advance by velocity Verlet: half a kick, a drift, half a kick; the second is that of the new pose. At the
-        start there are these ``contacts``, as far as the ``sight`` reaches.
+        """Advance by velocity Verlet: half a kick, a drift, half a kick; the second is that of the new pose.
+
+        The ``contacts`` are those at the start, as far as the ``sight`` reaches.
 
         Substeps are planned for a span of the ``sight`` at a time, and again while nothing is in range. The sight is
         widened then for bodies that contacts have made faster.
