@@ -29,6 +29,10 @@ _DRY_SECONDS = 5e-4, 1e-3
 _DRY_CONTACT_SECONDS = {True: 0.0015, False: 0.15}
 """The most CPU seconds for each body of a step through contacts without a fluid, of balls alone and of other shapes."""
 
+_IMPLICIT_SECONDS = 0.04
+"""The most CPU seconds besides these of a step without a fluid that is implicit: its iterations cost as much for few
+bodies as for many."""
+
 _UNITS = ((172800.0, 86400.0, "days"), (7200.0, 3600.0, "h"), (120.0, 60.0, "min"), (0.0, 1.0, "s"))
 
 
@@ -57,6 +61,8 @@ def dry_run_time_findings(system: System, time: TimeTable) -> Iterator[Finding]:
     least, most = (steps * seconds / speed for seconds in _DRY_SECONDS)
     if system.law is not None:
         most += steps * len(system.bodies) * _DRY_CONTACT_SECONDS[bool(system.balls.all())] / speed
+    if system.implicit:
+        most += steps * _IMPLICIT_SECONDS / speed
     found: Figures = {"steps": steps, "meshes": 0, "least": least, "most": most, "speed": speed}
     text = f"{steps} steps without a fluid take {time_in_words(least, most)} of one core at its present speed"
     yield Finding("note", QUESTION, (), text, found=found)

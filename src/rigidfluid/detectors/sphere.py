@@ -43,7 +43,6 @@ class SphereDetector(Detector):
 
         super().__init__(options, bodies, walls)
         self._radii = np.array([_radius(index, body) for index, body in enumerate(bodies)], dtype=float)
-        self._all_radii = np.append(self._radii, np.inf)  # behind those of the bodies that of any flat wall
         flat = [wall for wall in walls if wall.shape.plane]
         self._surfaces = np.array([wall.surface for wall in flat], dtype=np.int64)
         self._pairs = NearPairs(self._radii, flat_walls(bodies, walls))
@@ -63,23 +62,10 @@ class SphereDetector(Detector):
 
     def _flat_contacts(self, position: FloatArray, reach: float) -> Contacts:
         """Contacts of balls with balls and flat walls."""
-        from rigidfluid.detectors.sphere_contacts import Balls, FlatWalls, near_surfaces, points_and_normals
+        from rigidfluid.detectors.sphere_contacts import contact_columns
 
-        radii, pairs = self._radii, self._pairs.within(position, reach)
-        balls, walls = Balls(position, radii), FlatWalls(self._pairs.planes, self._surfaces)
-        a, b, gap = near_surfaces(balls, (pairs.start, pairs.second), walls, reach)
-        point_a, point_b, normal = points_and_normals(balls, walls, a, b)
-        return Contacts(
-            body_a=a,
-            body_b=b,
-            point_a=point_a,
-            point_b=point_b,
-            normal=normal,
-            gap=gap,
-            radius_a=radii[a],
-            radius_b=self._all_radii[np.minimum(b, len(radii))],
-            at_wall=b >= len(radii),
-        )
+        near, walls = self._pairs.within(position, reach), (self._pairs.planes, self._surfaces)
+        return Contacts(*contact_columns((position, self._radii), (near.start, near.second), walls, reach))
 
     def _curved_contacts(self, position: FloatArray, wall: Wall, reach: float) -> Contacts:
         """Contacts of balls with one wall, h by its signed distance; with facets at all places nearest around."""

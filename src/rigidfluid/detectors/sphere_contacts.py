@@ -1,31 +1,16 @@
-"""Contacts of balls with balls and flat walls: arrays in, arrays out."""
+"""Contacts of balls with balls and flat walls: arrays in, arrays out.
+
+Balls are a ``position`` (n, d) and ``radii`` (n,) [length]; flat walls are ``planes`` (w, 2, d), a point and the unit
+normal of each, and their rising numbers ``surfaces`` (w,).
+"""
 
 # numba compiles for the types that come; annotations would be a second, unchecked signature.
 # mypy: disallow-untyped-defs=False
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numba import njit
-
-from rigidfluid.core.geometry.arrays import FloatArray, IntArray
-
-
-class Balls(NamedTuple):
-    """Balls by ``position`` (n, d) and ``radii`` (n,) [length]."""
-
-    position: FloatArray
-    radii: FloatArray
-
-
-class FlatWalls(NamedTuple):
-    """Flat walls: ``planes`` (w, 2, d) are a point and the unit normal of each, ``surfaces`` (w,) their rising
-    numbers."""
-
-    planes: FloatArray
-    surfaces: IntArray
 
 
 @njit(cache=True, nogil=True)
@@ -104,3 +89,18 @@ def points_and_normals(balls, walls, body, other):
         for k in range(dimension):
             point_a[i, k] = position[a, k] - radii[a] * normal[i, k]
     return point_a, point_b, normal
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def contact_columns(balls, pairs, walls, reach):
+    """Columns of `Contacts` up to the effective radius, of the contacts that `near_surfaces` finds."""
+    body, other, gap = near_surfaces(balls, pairs, walls, reach)
+    point_a, point_b, normal = points_and_normals(balls, walls, body, other)
+    radii, count = balls[1], len(body)
+    radius_a, radius_b, at_wall = np.empty(count), np.empty(count), np.empty(count, np.bool_)
+    for i in range(count):
+        at_wall[i] = other[i] >= len(radii)
+        radius_a[i] = radii[body[i]]
+        radius_b[i] = np.inf if at_wall[i] else radii[other[i]]
+    effective = 1.0 / (1.0 / radius_a + 1.0 / radius_b)
+    return body, other, point_a, point_b, normal, gap, radius_a, radius_b, at_wall, effective

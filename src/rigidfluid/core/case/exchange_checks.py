@@ -10,6 +10,8 @@ from rigidfluid.core.seeding.placement import refuse_outside
 from rigidfluid.core.seeding.regions import DomainRegion, region_of
 from rigidfluid.core.seeding.swarm import swarm_of
 from rigidfluid.core.setup.changeable import require_changeable
+from rigidfluid.core.setup.fluid import Fluid
+from rigidfluid.core.setup.mesh_checks import check_inserter
 from rigidfluid.core.setup.model import Model
 from rigidfluid.errors import SceneError
 
@@ -48,8 +50,10 @@ def _check_source(table: SourceTable, number: int, model: Model) -> None:
         allowed = f"a name whose numbers, as {table.name}0, nobody else has: there is {alike[0]!r}"
         raise SceneError(f"{at}.name", repr(table.name), allowed, "Choose another name.")
     body_alone(model, number, 0)
+    shapes = swarm_of(table.swarm(0), at, model.dimension, Draws(model.seed), model.registry).shapes
+    if isinstance(model.fluid, Fluid):
+        check_inserter(model.fluid.mesh, shapes, model.domain, f"{at}.shape")
     if model.names_detector:
-        shapes = swarm_of(table.swarm(0), at, model.dimension, Draws(model.seed), model.registry).shapes
         model.detection[0].part(model.detection[0].options, (*model.shapes, *shapes), model.walls)
 
 

@@ -19,7 +19,7 @@ def contact_forces(system: System, scheme: Scheme, state: State, time: float) ->
     """Force of each contact of a state on its first body, by all laws, their dampers and springs along surfaces (m, d),
     zero at the start [force]."""
     contacts, law = state.contacts, system.law
-    if law is None or len(contacts) == 0 or state.count == 0:
+    if law is None or len(system.acting(contacts)) == 0 or state.count == 0:
         return np.zeros((len(contacts), system.dimension))
     if not law.dissipative:
         return law.force(contacts)

@@ -11,11 +11,14 @@ from rigidfluid.core.contact.path.look_ahead import look_ahead
 from rigidfluid.core.contact.path.substep_path import SubstepPath, fly_freely
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.motions import body_load
+from rigidfluid.core.model.contacts import select
+from rigidfluid.core.model.detection import Sight
 from rigidfluid.core.model.dynamics import BodyDynamics, ImpulsiveDynamics
+from rigidfluid.core.model.joints import NoJoints
 from rigidfluid.core.model.reduced_model import Coupling
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.model.types import Mesh, Pose, Step, Wrench
+from rigidfluid.core.model.types import Contacts, Mesh, Pose, Step, Wrench
 
 
 class DryScheme:
@@ -36,7 +39,10 @@ class DryScheme:
             path, dynamics = implicit_free(system, system.law, dynamics, size, state.springs)
         else:
             sight = look_ahead(system, dynamics, size)
-            path = SubstepPath(system, system.law, dynamics, size, state.springs).advance(sight)
+            near = self._contacts_at_start(state, sight)
+            path = SubstepPath(system, system.law, dynamics, size, state.springs).advance(sight, near)
+        if isinstance(system.joints, NoJoints):
+            return path
         by_joints = dynamics.link_work
         dissipated, actuator_work = path.dissipated + by_joints.damped, path.actuator_work + by_joints.drive_work
         return replace(path, dissipated=dissipated, actuator_work=actuator_work, link=by_joints.load(size))
@@ -68,6 +74,13 @@ class DryScheme:
         system, load = self._system, body_load(self._system, state)
         linked = system.joints.over(self._motions(state, start, load), start)
         return system.motions.carry(linked, start, load)
+
+    def _contacts_at_start(self, state: State, sight: Sight) -> Contacts:
+        """Contacts of a state as far as the sight reaches: detected already, unless that is farther than the system's
+        reach."""
+        if sight.reach > self._system.reach:
+            return sight.contacts_at(state.pose)
+        return select(state.contacts, state.contacts.gap <= sight.reach)
 
     def _motions(self, state: State, start: float, load: Wrench) -> ImpulsiveDynamics:
         """Dynamics of the motions, with a constant ``load`` on the bodies and without joints."""

@@ -79,7 +79,8 @@ class FluidScheme(ABC):
             path = implicit_coupled(system, system.law, dynamics, near, size, state.springs)
         else:
             sight = system.detection.look_ahead(ExtrapolatedContacts(near, state.pose), dynamics, size)
-            path = SubstepPath(system, system.law, dynamics, size, state.springs).advance(sight)
+            at_start = sight.contacts_at(dynamics.pose)
+            path = SubstepPath(system, system.law, dynamics, size, state.springs).advance(sight, at_start)
             path = replace(path, friction=dynamics.friction_loss)
         return replace(self._with_friction(path), coupling=coupling)
 

@@ -48,8 +48,10 @@ def updated_model(
         return ReducedModel(velocities, np.zeros((0, 0)), np.zeros(0), Evaluation(np.zeros(0), np.zeros(0)), False)
     bodies, d0 = velocities // step.load.shape[1], float(step.derivative[0])
     now = Evaluation(_film_resistance(system, contacts)[bodies], twist.ravel()[velocities])
-    inviscid, viscous, before = _remembered(known, velocities, d0)
     shared = share_sides(velocities, step.load.shape[1])
+    if known is not None and known.shared and not shared:
+        known = None  # of fewer digits than these few bodies have
+    inviscid, viscous, before = _remembered(known, velocities, d0)
     arm = twist_arms(system)[bodies, velocities % step.load.shape[1]] / reaches(system)[0][bodies]
     changed = _changes(now, before, bodies, arm / d0)
     fresh = ~(changed <= (CHANGED_SHARED if shared else CHANGED))

@@ -11,7 +11,7 @@ from scipy import sparse
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.own_motions import OwnMotions
-from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, lab_inertia
+from rigidfluid.core.mechanics.rigid import angular_momentum, inverse_lab_inertia, is_isotropic
 from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.types import Pose, Twist, Wrench
 
@@ -67,11 +67,11 @@ class DryDynamics(OwnMotions):
         self._prescribed_twist, self._time = prescribed_twist, 0.0
         self._any_prescribed = bool(prescribed.any())
         self._velocity = twist.velocity.copy()
-        self._inverse: FloatArray = np.asarray(np.linalg.inv(inertia), dtype=np.float64)
-        self._round = bool(np.all(inertia == inertia[:, :1, :1] * np.eye(inertia.shape[1])))
+        self._round = is_isotropic(inertia)
+        unit = np.eye(inertia.shape[1])
+        self._inverse: FloatArray = np.asarray(unit / inertia[:, :1, :1] if self._round else np.linalg.inv(inertia))
         self._balls = self._inverse[:, 0, 0].copy() if self._round and inertia.shape[1] == 3 else None
-        spin = lab_inertia(inertia, pose.orientation)
-        self._momentum = np.einsum("nij,nj->ni", spin, twist.angular_velocity)
+        self._momentum = angular_momentum(inertia, pose.orientation, twist.angular_velocity)
 
     @property
     def twist(self) -> Twist:
@@ -172,7 +172,7 @@ class DryDynamics(OwnMotions):
     def _prescribe(self, time: float) -> None:
         given, d = self._prescribed_twist(time), self._velocity.shape[1]
         self._velocity = np.where(self._free, self._velocity, given[:, :d])
-        spin = np.einsum("nij,nj->ni", lab_inertia(self._inertia, self.pose.orientation), given[:, d:])
+        spin = angular_momentum(self._inertia, self.pose.orientation, given[:, d:])
         self._momentum = np.where(self._free, self._momentum, spin)
 
     def _inverse_inertia(self) -> FloatArray:

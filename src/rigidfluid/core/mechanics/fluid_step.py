@@ -72,8 +72,10 @@ def _newton_euler(
     if state.past is not None:
         past.append(_Moment(time - size - state.past.step, state.past.pose, state.past.twist))
     poses, twists = [moment.pose for moment in past], [moment.twist for moment in past]
-    applied = applied_wrench(system, state, kinematics)
-    pushed = wrench_sum(impulse, Wrench(size * applied.force, size * applied.torque))
+    pushed = impulse
+    if state.applied is not None:
+        applied = applied_wrench(system, state, kinematics)
+        pushed = wrench_sum(impulse, Wrench(size * applied.force, size * applied.torque))
     pushed = mean_contact_wrench(pushed, _latest_wrench(system, state), state.past_step, derivative)
     pushed = system.solved_joints.with_springs(pushed, pose, time)
     motions, wrench = system.motions, wrench_sum(pushed, weights(system, kinematics))

@@ -14,7 +14,7 @@ from rigidfluid.core.mechanics.component_dynamics import ComponentDynamics
 from rigidfluid.core.mechanics.driven_dynamics import DrivenDynamics
 from rigidfluid.core.mechanics.dynamics import DryDynamics
 from rigidfluid.core.mechanics.kinematics import CarriedKinematics, carried_sum, levers
-from rigidfluid.core.mechanics.rigid import compose, lab_inertia, moment, rotation_matrices, turned
+from rigidfluid.core.mechanics.rigid import angular_momentum, compose, lab_inertia, moment, rotation_matrices, turned
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.model.dynamics import MotionDynamics
 from rigidfluid.core.model.mechanism import Mechanism
@@ -103,7 +103,7 @@ class CarriedBodies:
         """Relative angular momentum Σ Q I Qᵀ ν + m s × ds/dt of all that each motion carries, (N, k)
         [mass·length²/time]."""
         pose, twist = self._relative(time)
-        own = np.einsum("nij,nj->ni", lab_inertia(self._own_inertia, pose.orientation), twist.angular_velocity)
+        own = angular_momentum(self._own_inertia, pose.orientation, twist.angular_velocity)
         return self.sums(own + self._own_mass[:, None] * moment(pose.position, twist.velocity))
 
     def next_corner(self, time: float) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
-from rigidfluid.core.mechanics.rigid import rotation_matrices
+from rigidfluid.core.mechanics.rigid import lab_inertia
 from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_of, wrench_sum
 from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.state import State
@@ -91,9 +91,8 @@ def _acceleration(linear: FloatArray, angular: FloatArray, wrench: Wrench) -> Fl
 def own_inverse_masses(system: System, state: State) -> tuple[FloatArray, FloatArray]:
     """Inverse mass (N, d, d), with the added mass of bodies, and inverse inertia (N, k, k) of each motion alone in the
     lab frame, zero for prescribed motions [1/mass | 1/(mass·length²)]."""
-    rotation = rotation_matrices(state.pose.orientation)
     own = system.mass[:, None, None] * np.eye(system.dimension)
-    mass = own + rotation @ system.added_mass @ np.swapaxes(rotation, -1, -2)
+    mass = own + lab_inertia(system.added_mass, state.pose.orientation)
     free = ~system.motions.prescribed[:, None, None]
     linear, angular = system.motions.inverse_masses(mass, state.pose, state.motions.pose.position)
     return free * linear, free * angular

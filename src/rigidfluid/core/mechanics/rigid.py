@@ -11,6 +11,8 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.types import Pose, Twist
 
+_IDENTITY = np.eye(3)
+
 
 def rotation_matrices(orientation: FloatArray) -> FloatArray:
     """Matrices R that turn vectors of the bodies' frames into the lab frame, x_lab = R x_body.
@@ -84,12 +86,25 @@ def moment(arm: FloatArray, force: FloatArray) -> FloatArray:
 
 
 def lab_inertia(inertia: FloatArray, orientation: FloatArray) -> FloatArray:
-    """Inertia tensors in the lab frame R I Rᵀ (n, k, k), of ``inertia`` I in each body's frame; in 2D the scalar does
-    not change [mass·length²]."""
-    if orientation.shape[-1] == 1:
+    """Inertia tensors in the lab frame R I Rᵀ (n, k, k), of ``inertia`` I in each body's frame [mass·length²]; so those
+    of added mass (n, d, d) [mass]."""
+    if is_isotropic(inertia):
         return inertia
     rotation = rotation_matrices(orientation)
-    return np.asarray(rotation @ inertia @ np.swapaxes(rotation, -1, -2))
+    return np.asarray(rotation @ inertia @ rotation.swapaxes(-1, -2))
+
+
+def is_isotropic(tensor: FloatArray) -> bool:
+    """Tell whether all tensors (n, k, k) are multiples of the identity, as those of balls: no rotation changes them."""
+    size = tensor.shape[1]
+    return size == 1 or not bool((tensor != tensor[:, :1, :1] * _IDENTITY[:size, :size]).any())
+
+
+def angular_momentum(inertia: FloatArray, orientation: FloatArray, angular_velocity: FloatArray) -> FloatArray:
+    """Angular momenta R I Rᵀ ω (n, k), arguments as for `lab_inertia` [mass·length²/time]."""
+    if is_isotropic(inertia):
+        return np.asarray(inertia[:, 0, :1] * angular_velocity)
+    return np.asarray(np.einsum("nij,nj->ni", lab_inertia(inertia, orientation), angular_velocity))
 
 
 def turned(orientation: FloatArray, spin: FloatArray) -> FloatArray:
@@ -106,8 +121,8 @@ def inverse_lab_inertia(inertia: FloatArray, orientation: FloatArray) -> FloatAr
 
 def kinetic_energy(mass: FloatArray, inertia: FloatArray, pose: Pose, twist: Twist) -> float:
     """Kinetic energy of the bodies, Σ ½ m|U|² + ½ ω·(R I Rᵀ)ω [energy]."""
-    spin = np.einsum("nij,nj->ni", lab_inertia(inertia, pose.orientation), twist.angular_velocity)
-    return 0.5 * float(mass @ np.sum(twist.velocity**2, axis=1) + np.sum(spin * twist.angular_velocity))
+    spin = angular_momentum(inertia, pose.orientation, twist.angular_velocity)
+    return 0.5 * float(mass @ (twist.velocity**2).sum(axis=1) + (spin * twist.angular_velocity).sum())
 
 
 def _planar_matrices(angle: FloatArray) -> FloatArray:

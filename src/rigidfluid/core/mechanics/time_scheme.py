@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.mechanics.rigid import lab_inertia, rotate
+from rigidfluid.core.mechanics.rigid import angular_momentum, lab_inertia, rotate
 from rigidfluid.core.model.types import Pose, Twist, Wrench
 
 
@@ -94,7 +94,7 @@ def newton_euler(
 
 def momentum(mass: FloatArray, inertia: FloatArray, pose: Pose, twist: Twist) -> FloatArray:
     """Momentum of each body (m U, R I Rᵀ ω), (n, d+k) [mass·length/time | mass·length²/time]."""
-    spin = np.einsum("nij,nj->ni", lab_inertia(inertia, pose.orientation), twist.angular_velocity)
+    spin = angular_momentum(inertia, pose.orientation, twist.angular_velocity)
     return np.concatenate([mass[:, None] * twist.velocity, spin], axis=1)
 
 

@@ -4,6 +4,7 @@ there."""
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -11,11 +12,15 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.model.types import Contacts
 
+_columns = attrgetter(*Contacts.__slots__)
+
 
 def select(contacts: Contacts, chosen: IntArray | BoolArray) -> Contacts:
-    """Contacts in the rows ``chosen``, (k,) numbers in the order wanted or (m,) truth values."""
-    columns = (getattr(contacts, name) for name in Contacts.__slots__)
-    taken: Iterator[Any] = (None if column is None else column[chosen] for column in columns)
+    """Contacts in the rows ``chosen``, (k,) numbers in the order wanted or (m,) truth values; the same record where all
+    are true."""
+    if chosen.dtype.kind == "b" and chosen.all():
+        return contacts
+    taken: list[Any] = [None if column is None else column[chosen] for column in _columns(contacts)]
     return Contacts(*taken)
 
 

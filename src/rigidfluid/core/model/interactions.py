@@ -35,6 +35,8 @@ class Interaction:
         chosen = np.ones(len(contacts), dtype=bool)
         if self.between != "all":
             chosen &= contacts.at_wall == (self.between == "walls")
+        if not self.surfaces:
+            return chosen
         a, b = ([np.isin(side, group) for group in self.surfaces] for side in (contacts.body_a, contacts.body_b))
         if len(self.surfaces) == 1:
             chosen &= a[0] | b[0]
@@ -48,8 +50,10 @@ _Share = tuple[Interaction, Contacts, BoolArray]
 
 def acted_in(interactions: Sequence[Interaction], contacts: Contacts) -> BoolArray:
     """Tell whether any of the interactions acts in each contact, (m,)."""
-    each = [interaction.acts_in(contacts) for interaction in interactions]
-    return np.asarray(np.any(each, axis=0), dtype=bool) if each else np.zeros(len(contacts), dtype=bool)
+    chosen = np.zeros(len(contacts), dtype=bool)
+    for interaction in interactions:
+        chosen |= interaction.acts_in(contacts)
+    return chosen
 
 
 def acting_together(interactions: Sequence[Interaction]) -> ForceLaw | None:
@@ -155,9 +159,7 @@ class SumOfLaws(ForceLaw):
     def _divided(self, contacts: Contacts) -> Iterator[_Share]:
         for interaction in self.interactions:
             chosen = interaction.acts_in(contacts)
-            if chosen.all():
-                yield interaction, contacts, chosen
-            elif chosen.any():
+            if chosen.any():
                 yield interaction, select(contacts, chosen), chosen
 
 

@@ -142,7 +142,7 @@ def contacts(answer: Any, part: Any, pose: Pose, mesh: Any, reach: float) -> Non
     signs that the detector does not declare."""
     refuse_others(answer, Contacts)
     refuse_odd(answer, pose, part.bodies, part.walls)
-    odd = np.flatnonzero((np.abs(answer.sign) if part.signed else answer.sign) != 1.0)
-    if len(odd):
-        allowed = "1 or -1" if part.signed else "1, as `signed` is not set"
-        raise Wrong(f"a sign of {answer.sign[odd[0]]:g}, contact {odd[0]}", allowed)
+    odd = (np.abs(answer.sign) if part.signed else answer.sign) != 1.0
+    if odd.any():
+        first, allowed = int(np.argmax(odd)), "1 or -1" if part.signed else "1, as `signed` is not set"
+        raise Wrong(f"a sign of {answer.sign[first]:g}, contact {first}", allowed)

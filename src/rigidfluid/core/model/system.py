@@ -107,7 +107,7 @@ class System:
 
     def acting(self, contacts: Contacts) -> IntArray:
         """Numbers of those of m contacts in which a law acts, within its range."""
-        return np.flatnonzero(contacts.gap <= self.law.range) if self.law else np.zeros(0, dtype=np.int64)
+        return (contacts.gap <= self.law.range).nonzero()[0] if self.law else np.zeros(0, dtype=np.int64)
 
     @cached_property
     def detection(self) -> Detection:

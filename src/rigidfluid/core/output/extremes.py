@@ -30,5 +30,5 @@ class Extremes:
 
     def after(self, gaps: FloatArray, twist: Twist) -> Extremes:
         """Extremes with one more state in them, with each body's nearest gap (n,) [length]."""
-        speed = np.sqrt(np.sum(np.square(twist.velocity), axis=1))
+        speed = np.sqrt(np.square(twist.velocity).sum(axis=1))
         return Extremes(min(self.smallest_gap, float(gaps.min(initial=np.inf))), np.maximum(self.highest_speed, speed))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
+from operator import attrgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -89,6 +90,9 @@ def _components(name: str, dimension: int) -> tuple[str, ...]:
     return tuple(name + axis for axis in "xyz"[:dimension])
 
 
+_ledger_row = attrgetter(*LEDGER_COLUMNS)
+
+
 class StepCost(NamedTuple):
     """Cost of the step to a state: its ``size`` [time], how many meshes have been made since the start, and the
     ``quality`` of the worst cell [1]."""
@@ -108,7 +112,7 @@ def records(
         "bodies": list(_body_rows(system, state, stamp)),
         "contacts": list(_contact_rows(system, state, stamp, forces)),
         "joints": list(_joint_rows(system, state, stamp, time)),
-        "energy": [(*stamp, *(getattr(state.ledger, name) for name in LEDGER_COLUMNS))],
+        "energy": [(*stamp, *_ledger_row(state.ledger))],
         "steps": [] if cost is None else [_step_row(system, state, stamp, cost)],
         "probes": list(_probe_rows(system, probes, state, stamp)),
         "driving": list(_driving_rows(system, state, stamp)),
@@ -134,9 +138,10 @@ def moving(system: System) -> tuple[str, ...]:
 def _body_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:
     """A row for each body, and one for each mechanism, with the least gap of its components."""
     numbers = _numbers(state.pose, state.twist, state.hydrodynamic_wrench, state.contact_wrench, state.gaps)
-    motions, gaps = state.motions, system.motions.least(state.gaps)
-    wholes = _numbers(motions.pose, motions.twist, motions.hydrodynamic, motions.contact, gaps)
-    numbers += wholes[len(wholes) - len(system.motions.names) :]
+    if system.motions.names:
+        motions, gaps = state.motions, system.motions.least(state.gaps)
+        wholes = _numbers(motions.pose, motions.twist, motions.hydrodynamic, motions.contact, gaps)
+        numbers += wholes[len(wholes) - len(system.motions.names) :]
     for name, row in zip(moving(system), numbers, strict=True):
         yield (*stamp, name, *row)
 

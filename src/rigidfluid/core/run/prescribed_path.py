@@ -21,4 +21,6 @@ def with_prescribed(system: System, path: BodyStep, end: float) -> BodyStep:
         motions = Pose(position, np.where(prescribed, pose.orientation, motions.orientation))
     motions = system.joints.closed(motions, end)
     bodies = system.motions.poses(motions, end)
+    if motions is path.motions.pose and bodies is path.pose:
+        return path
     return replace(path, pose=bodies, motions=replace(path.motions, pose=motions))

@@ -173,7 +173,7 @@ def stored_energy(system: System, contacts: Contacts, motions: Pose, time: float
 
 def contact_energy(system: System, contacts: Contacts) -> float:
     """Energy stored in the contacts [energy]."""
-    if system.law is None or len(contacts) == 0:
+    if system.law is None or len(system.acting(contacts)) == 0:
         return 0.0
     return float(np.sum(system.law.energy(contacts)))
 
@@ -182,8 +182,9 @@ def _power(system: System, advance: Advance, step: Step, motions: Pose) -> Power
     """Power of a step [energy/time]: that which enters by the boundary, drives bodies and joints in the fluid, or is
     dissipated by fluid and dampers."""
     twist, where = prescribed_part(step)
-    control = -float(power(advance.hydrodynamic_wrench, twist)[where].sum())
-    control += float(advance.link_force @ step.links.rate)
+    control = float(advance.link_force @ step.links.rate)
+    if where.any():
+        control -= float(power(advance.hydrodynamic_wrench, twist)[where].sum())
     control += system.solved_joints.spring_power(motions, step.time)
     return Power(
         boundary=advance.boundary_power,

@@ -57,10 +57,10 @@ def check_cells(mesh: MeshTable, domain: Domain) -> None:
         _check_count(f"mesh.refine.{number}.size", box.size, float(np.prod(inside)), "this box", domain.dimension)
 
 
-def check_inserter(mesh: MeshTable, shapes: Sequence[Body], domain: Domain) -> None:
-    """Refuse shapes that no mesher puts into this domain; raises SceneError."""
+def check_inserter(mesh: MeshTable, shapes: Sequence[Body], domain: Domain, field: str = "body") -> None:
+    """Refuse shapes, of the tables ``field``, that no mesher puts into this domain; raises SceneError."""
     try:
-        Inserter(mesh.inserter).chosen(shapes, domain)
+        Inserter(mesh.inserter).chosen(shapes, domain, field)
     except MeshError as error:
         raise SceneError(error.subject, error.found, error.allowed, error.remedy) from error
 

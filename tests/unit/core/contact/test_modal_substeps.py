@@ -80,7 +80,7 @@ def followed(run, monkeypatch, size=SIZE):
         monkeypatch.setattr(substep_path, "modal_substeps", maker)
         bodies = dynamics(run, size=size)
         sight = look_ahead(run.system, bodies, size)
-        path = SubstepPath(run.system, run.system.law, bodies, size).advance(sight)
+        path = SubstepPath(run.system, run.system.law, bodies, size).advance(sight, sight.contacts_at(bodies.pose))
         found.append(SimpleNamespace(path=path, bodies=bodies))
     return found
 
@@ -118,8 +118,9 @@ def test_overlaps_are_refused():
     run = gas(2, **LAWS["contact"] | {"epsilon": 1.0, "substeps": 10})
     bodies = dynamics(run)
     bodies.apply_impulse(1e3 * np.ones((4, 3)))
+    sight = look_ahead(run.system, bodies, SIZE)
     with pytest.raises(StepRejected, match="a gap of -"):
-        SubstepPath(run.system, run.system.law, bodies, SIZE).advance(look_ahead(run.system, bodies, SIZE))
+        SubstepPath(run.system, run.system.law, bodies, SIZE).advance(sight, sight.contacts_at(bodies.pose))
 
 
 def test_other_bodies_are_followed_one_by_one():

@@ -251,3 +251,16 @@ def test_bodies_near_each_other_across_periodic_surfaces_share_no_right_side():
 def test_many_bodies_share_whatever_their_components(bodies, share):
     two_of_three = (np.arange(bodies)[:, None] * WIDTH + np.arange(2)).ravel()
     assert share_sides(two_of_three, WIDTH) is share
+
+
+def test_a_model_that_is_shared_no_longer_is_evaluated_anew_for_all_that_stay():
+    """Three digits do for many; few have all, also those whose gaps and motion stay the same."""
+    bodies = Bodies(row(ALONE + 1, 0.3))
+    gaps = np.full(ALONE + 1, 0.01)
+    shared = bodies.model(gaps, None)
+    few = bodies.model(gaps, shared, np.arange(ALONE * WIDTH))
+    assert shared.shared
+    assert not few.shared
+    np.testing.assert_array_equal(bodies.evaluated[-1], np.arange(ALONE))
+    stay = slice(ALONE * WIDTH)
+    np.testing.assert_allclose(few.inverse_mass, bodies.inviscid[stay, stay], rtol=0, atol=1e-12)

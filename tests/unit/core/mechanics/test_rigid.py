@@ -4,6 +4,7 @@ from scipy.spatial.transform import Rotation
 
 from rigidfluid.core.mechanics.rigid import (
     angle_between,
+    angular_momentum,
     compose,
     cross,
     lab_inertia,
@@ -89,6 +90,30 @@ def test_lab_inertia_is_that_of_turned_point_masses() -> None:
     turned = [inertia(points @ rotation.T) for rotation in rotation_matrices(QUATERNIONS)]
     own = np.tile(inertia(points), (len(QUATERNIONS), 1, 1))
     np.testing.assert_allclose(lab_inertia(own, QUATERNIONS), turned, rtol=1e-13, atol=1e-13)
+
+
+def test_inertia_of_balls_alone_does_not_turn() -> None:
+    """No digit of it: but among others they are turned as these are."""
+    balls, others = np.tile(2.0 * np.eye(3), (20, 1, 1)), np.tile(np.diag([1.0, 2.0, 3.0]), (20, 1, 1))
+    np.testing.assert_array_equal(lab_inertia(balls, QUATERNIONS), balls)
+    both = np.concatenate([balls, others]), np.tile(QUATERNIONS, (2, 1))
+    turned = lab_inertia(*both)
+    np.testing.assert_allclose(turned[:20], balls, rtol=0, atol=1e-14)
+    rotation = rotation_matrices(QUATERNIONS)
+    np.testing.assert_allclose(turned[20:], rotation @ others @ rotation.swapaxes(1, 2), rtol=0, atol=1e-14)
+
+
+def test_added_mass_turns_in_the_plane() -> None:
+    quarter = np.array([[np.pi / 2]])
+    np.testing.assert_allclose(lab_inertia(np.diag([1.0, 2.0])[None], quarter)[0], np.diag([2.0, 1.0]), atol=1e-15)
+
+
+@pytest.mark.parametrize("moments", [(2.0, 2.0, 2.0), (1.0, 2.0, 3.0)])
+def test_angular_momentum_is_the_inertia_times_the_angular_velocity(moments: tuple[float, ...]) -> None:
+    own = np.tile(np.diag(moments), (20, 1, 1))
+    expected = [matrix @ spin for matrix, spin in zip(lab_inertia(own, QUATERNIONS), VECTORS, strict=True)]
+    np.testing.assert_allclose(angular_momentum(own, QUATERNIONS, VECTORS), expected, rtol=1e-14, atol=1e-14)
+    np.testing.assert_array_equal(angular_momentum(np.array([[[2.0]]]), np.zeros((1, 1)), np.array([[3.0]])), [[6.0]])
 
 
 def test_inertia_in_the_plane_does_not_turn() -> None:

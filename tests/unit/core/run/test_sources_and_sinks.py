@@ -193,6 +193,17 @@ def test_a_detector_that_is_named_knows_all_shapes_of_a_source() -> None:
         scene_from_dict(given | {"contact": {"detector": "sphere"}})
 
 
+def test_shapes_of_a_source_that_no_mesher_puts_in_are_refused_at_once() -> None:
+    """And not only when the first one enters."""
+    square = {"type": "polygon", "points": [[0.0, 0.0], [0.1, 0.0], [0.1, 0.1], [0.0, 0.1]]}
+    faces = [{"on": "left", "type": "periodic"}, {"on": "right", "type": "periodic"}]
+    entering = SOURCE | {"every": 0.2, "shape": [SHAPE[0], square]}
+    scene_from_dict(wet_tables(POST, source=[entering]))
+    scene_from_dict(wet_tables(POST, source=[SOURCE | {"every": 0.2}], boundary=faces))
+    with pytest.raises(SceneError, match=r"mesh\.inserter: found source\.0\.shape\.1 made of facets with periodic"):
+        scene_from_dict(wet_tables(POST, source=[entering], boundary=faces))
+
+
 def test_a_law_leaves_with_the_body_that_it_names() -> None:
     falling = POST | {"name": "falling", "position": [0.3, 0.4], "velocity": [0.0, -1.0], "fixed": False}
     law = {"law": "spring-dashpot", "range": 0.02, "stiffness": 1e4, "restitution": 0.5, "names": ["post", "falling"]}

@@ -32,13 +32,17 @@ def detect_contacts_and_gaps(system: System, pose: Pose, mesh: Mesh | None) -> t
     np.minimum.at(gaps, near.body_a, near.gap)
     paired = near.body_b < count
     np.minimum.at(gaps, near.body_b[paired], near.gap[paired])
-    return select(near, interacting(system, near)), gaps
+    return interacting(system, near), gaps
 
 
-def interacting(system: System, contacts: Contacts) -> BoolArray:
-    """Tell whether a contact (m,) is between separate bodies, and some law's, if there is any law."""
-    apart = are_separate(system, contacts)
-    return apart & acted_in(system.interactions, contacts) if system.interactions else apart
+def interacting(system: System, contacts: Contacts) -> Contacts:
+    """Choose the contacts that are between separate bodies, and some law's, if there is any law."""
+    if len(contacts) == 0:
+        return contacts
+    chosen = are_separate(system, contacts)
+    if system.interactions:
+        chosen &= acted_in(system.interactions, contacts)
+    return select(contacts, chosen)
 
 
 def are_separate(system: System, contacts: Contacts) -> BoolArray:

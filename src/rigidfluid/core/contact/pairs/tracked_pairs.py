@@ -63,8 +63,7 @@ class TrackedPairs:
         return select(both, row)
 
     def _detected(self, pose: Pose, reach: float) -> Contacts:
-        near = detect(self._system, pose, None, reach)
-        return select(near, interacting(self._system, near))
+        return interacting(self._system, detect(self._system, pose, None, reach))
 
     def _numbers(self, contacts: Contacts) -> IntArray:
         """Number of each contact's pair, image and sign, in the detectors' order of pairs."""

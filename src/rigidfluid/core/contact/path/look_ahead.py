@@ -52,9 +52,7 @@ def _detection(system: System, reach: float) -> Callable[[Pose], Contacts]:
     """Function that detects the contacts up to a gap ``reach`` [length] at a pose, without a mesh."""
 
     def contacts_at(pose: Pose) -> Contacts:
-        near = detect(system, pose, None, reach)
-        chosen = interacting(system, near)
-        return near if chosen.all() else select(near, chosen)
+        return interacting(system, detect(system, pose, None, reach))
 
     return contacts_at
 

@@ -66,14 +66,15 @@ class SubstepPath:
     size: float
     springs: TangentialSprings | None = None
 
-    def advance(self, sight: Sight) -> BodyStep:
+    def advance(self, sight: Sight, contacts: Contacts) -> BodyStep:
         """Advance by velocity Verlet: half a kick, a drift, half a kick; the second is that of the new pose.
+
+        The ``contacts`` are those at the start, as far as the ``sight`` reaches.
 
         Substeps are planned for a span of the ``sight`` at a time, and again while nothing is in range. The sight is
         widened then for bodies that contacts have made faster.
         """
         system, dynamics, size = self.system, self.dynamics, self.size
-        contacts = sight.contacts_at(dynamics.pose)
         impulse, dissipated, actuator_work, count, left = nothing(dynamics.pose), 0.0, 0.0, 0, size
         load = contact_load(system, self.law, contacts, dynamics, self.springs)
         dissipated += load.slipped

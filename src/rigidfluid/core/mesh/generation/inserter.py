@@ -28,9 +28,10 @@ class Inserter:
     way: Way | None = None
     timeout: float = MESHER_TIMEOUT
 
-    def chosen(self, bodies: Sequence[Body], domain: Domain) -> Way:
-        """The way for these shapes; raises MeshError where one of them has no CAD shape and needs it."""
-        of_facets = [f"body.{i}" for i, body in enumerate(bodies) if body.facets is not None]
+    def chosen(self, bodies: Sequence[Body], domain: Domain, field: str = "body") -> Way:
+        """The way for these shapes, of the tables ``field``; raises MeshError where one of them has no CAD shape and
+        needs it."""
+        of_facets = [f"{field}.{i}" for i, body in enumerate(bodies) if body.facets is not None]
         of_facets += ["the domain"] if domain.facets is not None else []
         if self.way == "cad" and of_facets:
             found = f"'cad' with {of_facets[0]} made of facets"
