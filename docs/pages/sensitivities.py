@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from page_tools import Page, Run, Work, table
 
-SHARE = 1e-4
+SHARE = 3e-5
 """Half the difference of the values of two runs, relative to the value."""
 
 QUANTITIES = ("place", "velocity", "force")

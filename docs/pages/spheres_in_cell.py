@@ -47,7 +47,8 @@ def rows() -> Iterator[dict[str, Any]]:
 
 ABOUT = """The scene of this page, `docs/pages/spheres_in_cell.py`, is for cost and memory on a coarse mesh: 64 spheres
 of twice the fluid's density, a tenth of the volume, seeded by `[[swarm]]`, start from rest and settle in a cell that is
-periodic in all directions. The flux through its sides is held at zero.
+periodic in all directions. The flux through its sides is held at zero. In this time none comes into the range of
+another one's law, and the first mesh serves.
 
 {figures}
 

@@ -118,10 +118,11 @@ def torque_of_twist(gap: float) -> float:
 # the share φ of the area. Sangani and Acrivos, Int. J. Multiphase Flow 8 (1982) 193, table 1, as quoted by Basilisk's
 # test `cylinders`.
 CYLINDER_ARRAY = {0.05: 15.56, 0.1: 24.83, 0.2: 51.53, 0.3: 102.90, 0.4: 217.89, 0.5: 532.55, 0.6: 1763.0, 0.7: 13520.0}
+DENSE_CYLINDERS = {0.75: 126300.0}
 
 # A simple cubic array of spheres: force over 6πμ, radius and mean velocity, by the share φ of the volume. Zick and
 # Homsy, J. Fluid Mech. 115 (1982) 13, table 2, as quoted by Basilisk's test `spheres`.
-SPHERE_ARRAY = {0.027: 2.008, 0.064: 2.810, 0.125: 4.292, 0.216: 7.442, 0.343: 15.4}
+SPHERE_ARRAY = {0.027: 2.008, 0.064: 2.810, 0.125: 4.292, 0.216: 7.442, 0.343: 15.4, 0.45: 28.1}
 
 # A cylinder of the fluid's density and of diameter .25 in a square channel of side 1, which is periodic, ρ = 1: Pan and
 # Glowinski, J. Comput. Phys. 181 (2002) 260, figure as digitised for `docs/source/examples/case2` of the repository

@@ -216,6 +216,15 @@ def test_a_body_that_touches_a_periodic_surface_has_a_mesh(x: float) -> None:
     assert np.ptp(mesh.points[:, 0]) > 1.0  # cut open elsewhere, not straight
 
 
+@pytest.mark.parametrize("radius", [0.49, 0.498])
+def test_a_body_near_its_own_images_has_a_mesh(radius: float) -> None:
+    body = {"type": "sphere", "radius": radius, "density": 1.0, "position": [0.5, 0.5]}
+    all_around, domain = [{"on": "all", "type": "periodic"}], {"lower": [0.0, 0.0], "upper": [1.0, 1.0]}
+    mesh = {"size": 0.1, "size_body": 0.05}
+    made = Simulation(channel(all_around, body=[body], domain=domain, mesh=mesh)).state.mesh
+    assert cell_quality(made.points, made.cells).min() > 0.1
+
+
 def test_a_body_of_facets_is_refused_before_any_mesh_is_made() -> None:
     square = {"type": "polygon", "points": [[0.0, 0.0], [0.2, 0.0], [0.2, 0.2]], "density": 1.0, "position": [0.6, 0.6]}
     with pytest.raises(SceneError, match=r"mesh.inserter: found body.0 made of facets with periodic surfaces; allowed"):

@@ -20,7 +20,12 @@ from rigidfluid.core.mesh.generation.fill import fill_mesh
 from rigidfluid.core.mesh.generation.inserter import BY_SHAPE, Inserter
 from rigidfluid.core.mesh.generation.meshing import generate_mesh, put_back
 from rigidfluid.core.mesh.generation.refine_films import refine_films
-from rigidfluid.core.mesh.generation.refine_surface import long_edges, on_kept_surfaces, refine_surface
+from rigidfluid.core.mesh.generation.refine_surface import (
+    long_edges,
+    long_seam_edges,
+    on_kept_surfaces,
+    refine_surface,
+)
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes, edge_lengths
 from rigidfluid.core.mesh.size.size_field import LONGEST, Sizes, wanted_size
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, check_volume, distinct_edges, orient
@@ -109,7 +114,9 @@ def inserted_mesh(fluid_domain: FluidDomain, sizes: Sizes, inserter: Inserter) -
     finer: list[tuple[FloatArray, float]] = []
     for _ in range(GENERATIONS):
         mesh = generate_mesh(fluid_domain, sizes, finer)
-        _, points, wanted = long_edges(mesh, fluid_domain, sizes, BISECTABLE)
+        _, *on_bodies = long_edges(mesh, fluid_domain, sizes, BISECTABLE)
+        on_seams = long_seam_edges(mesh, fluid_domain, sizes, LONGEST_EDGE)
+        points, wanted = (np.concatenate(both) for both in zip(on_bodies, on_seams, strict=True))
         if not len(points):
             break
         finer += zip(points, wanted, strict=True)

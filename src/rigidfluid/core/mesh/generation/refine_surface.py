@@ -71,6 +71,18 @@ def long_edges(
     return edges, middles, wanted_size(middles, fluid_domain, sizes)
 
 
+def long_seam_edges(
+    mesh: Mesh, fluid_domain: FluidDomain, sizes: Sizes, longest: float
+) -> tuple[FloatArray, FloatArray]:
+    """Middles (E, d) of the edges on periodic surfaces that are longer than ``longest`` times the size wanted there, and
+    that size (E,): no vertex can be put there later."""
+    edges, _ = edges_of_facets(mesh, on_periodic_surfaces(mesh, len(fluid_domain.bodies), fluid_domain.domain))
+    middles, ends = mesh.points[edges].mean(axis=1), mesh.points[edges]
+    wanted = wanted_size(middles, fluid_domain, sizes)
+    long = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) > longest * wanted
+    return middles[long], wanted[long]
+
+
 def middles_on_surfaces(mesh: Mesh, edges: IntArray, fluid_domain: FluidDomain) -> FloatArray:
     """Points (E, d) of the exact surface above the middles of ``edges`` (E, 2), which are sorted; of all that meet
     there."""
