@@ -84,7 +84,7 @@ SUBJECTS = {
         "step": "One step compared with the same step in NGSolve",
         "contact_step": "What a step with contacts costs",
         "sheared_disks": "200 disks in a sheared periodic cell: seconds and memory of its steps",
-        "spheres_in_cell": "64 spheres that settle in a cell periodic in all directions: seconds and memory of its steps",
+        "spheres_in_cell": "64 spheres that settle in a periodic cell: seconds and memory of its steps",
         "step_profile": "Where the time of a step goes, in twelve classes of scenes",
         "settling_sphere": "Steps in 3D: iterations, time and memory",
         "parallel": "Many balls on several processes",

@@ -30,8 +30,8 @@ _DRY_CONTACT_SECONDS = {True: 0.0015, False: 0.15}
 """The most CPU seconds for each body of a step through contacts without a fluid, of balls alone and of other shapes."""
 
 _IMPLICIT_SECONDS = 0.04
-"""The most CPU seconds besides these of a step without a fluid that is implicit: its iterations cost as much for few
-bodies as for many."""
+"""The most CPU seconds that an implicit step without a fluid takes besides these: its iterations take about as long for
+few bodies as for many."""
 
 _UNITS = ((172800.0, 86400.0, "days"), (7200.0, 3600.0, "h"), (120.0, 60.0, "min"), (0.0, 1.0, "s"))
 

@@ -33,7 +33,7 @@ def _height(position, a, planes, wall):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def near_surfaces(balls, pairs, walls, reach):
+def _near_surfaces(balls, pairs, walls, reach):
     """Balls a, surfaces b near them and gaps ≤ ``reach`` [length], (m,) each, sorted by (a, b).
 
     The ``pairs``, a start and the partners, are ball a with ``second[start[a]:start[a + 1]]``: balls of higher numbers,
@@ -61,9 +61,9 @@ def near_surfaces(balls, pairs, walls, reach):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def points_and_normals(balls, walls, body, other):
+def _points_and_normals(balls, walls, body, other):
     """Nearest points of a and of b [length], and normals, (m, d) each, of the balls a and surfaces b of
-    `near_surfaces`.
+    `_near_surfaces`.
 
     The normal of balls with a common centre is the first axis.
     """
@@ -93,9 +93,9 @@ def points_and_normals(balls, walls, body, other):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def contact_columns(balls, pairs, walls, reach):
-    """Columns of `Contacts` up to the effective radius, of the contacts that `near_surfaces` finds."""
-    body, other, gap = near_surfaces(balls, pairs, walls, reach)
-    point_a, point_b, normal = points_and_normals(balls, walls, body, other)
+    """Columns of `Contacts` up to the effective radius, of the contacts that `_near_surfaces` finds."""
+    body, other, gap = _near_surfaces(balls, pairs, walls, reach)
+    point_a, point_b, normal = _points_and_normals(balls, walls, body, other)
     radii, count = balls[1], len(body)
     radius_a, radius_b, at_wall = np.empty(count), np.empty(count), np.empty(count, np.bool_)
     for i in range(count):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from copy import deepcopy
 from dataclasses import replace
 from functools import cache
 from typing import ClassVar
@@ -145,6 +146,22 @@ class DetectorContract:
     def test_nothing_near(self, dimension: int) -> None:
         """A body alone has no contacts, but arrays of the right shape."""
         _check_empty(self.detect(single_ball(dimension), self.reach), dimension)
+
+    def test_a_shorter_reach_leaves_out_what_is_beyond(self, arrangement: Arrangement) -> None:
+        """And changes nothing else: the loop takes contacts in a shorter reach from those in a longer one."""
+        far = self.detect(arrangement, self.reach)
+        reach = float(np.mean(np.sort(far.gap)[:2]))
+        self._check_same(select(far, far.gap <= reach), self.detect(arrangement, reach))
+
+    def test_contacts_stay_as_they_were_found(self, arrangement: Arrangement) -> None:
+        """A later call leaves the arrays of an earlier one alone: the loop keeps them."""
+        detector = self.make_detector(arrangement)
+        mesh = detection_by(type(detector)).mesh_at(arrangement.pose, lambda pose: arrangement.mesh)
+        found = detector.detect(arrangement.pose, mesh, self.reach)
+        kept = deepcopy(found)
+        detector.detect(arrangement.pose, mesh, float(np.mean(np.sort(found.gap)[:2])))
+        for name in Contacts.__slots__:
+            np.testing.assert_array_equal(getattr(found, name), getattr(kept, name), err_msg=name)
 
     def test_overlap_has_a_negative_gap(self, dimension: int) -> None:
         """Two overlapping balls, one of them sunk into a wall."""

@@ -76,8 +76,8 @@ class DryScheme:
         return system.motions.carry(linked, start, load)
 
     def _contacts_at_start(self, state: State, sight: Sight) -> Contacts:
-        """Contacts of a state as far as the sight reaches: detected already, unless that is farther than the system's
-        reach."""
+        """Contacts of a state as far as the sight reaches: its own, which go as far as the system's reach, or else
+        detected."""
         if sight.reach > self._system.reach:
             return sight.contacts_at(state.pose)
         return select(state.contacts, state.contacts.gap <= sight.reach)

@@ -50,7 +50,7 @@ def updated_model(
     now = Evaluation(_film_resistance(system, contacts)[bodies], twist.ravel()[velocities])
     shared = share_sides(velocities, step.load.shape[1])
     if known is not None and known.shared and not shared:
-        known = None  # of fewer digits than these few bodies have
+        known = None  # responses of few bodies have all digits
     inviscid, viscous, before = _remembered(known, velocities, d0)
     arm = twist_arms(system)[bodies, velocities % step.load.shape[1]] / reaches(system)[0][bodies]
     changed = _changes(now, before, bodies, arm / d0)

@@ -8,7 +8,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.dynamics import DryDynamics
-from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, rotate, turned
+from rigidfluid.core.mechanics.rigid import inverse_lab_inertia, is_isotropic, rotate, turned
 from rigidfluid.core.model.motions import Motions
 from rigidfluid.core.model.types import Pose, Twist
 from rigidfluid.errors import StepRejected
@@ -59,6 +59,7 @@ class DrivenDynamics(DryDynamics):
         orientation = np.where(driven[:, None], followed, self.pose.orientation)
         self.pose = Pose(self.pose.position, orientation)
         self._inertia = self._mechanisms.inertia(end)
+        self._round = is_isotropic(self._inertia)
         self._inverse = np.asarray(np.linalg.inv(self._inertia), dtype=np.float64)
 
     def _turned(self, orientation: FloatArray, middle: float, time: float) -> FloatArray:

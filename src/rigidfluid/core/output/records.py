@@ -26,6 +26,8 @@ LEDGER_COLUMNS = (
     *("dissipation", "grad_div_loss", "contact_loss", "transfer_loss", "path_friction", "residual"),
     *("residual_start", "residual_remeshing", "residual_contacts", "residual_mesh", "residual_steps"),
 )
+_ledger_row = attrgetter(*LEDGER_COLUMNS)
+
 ESTIMATED, CAUSES = ("velocity", "angular_velocity", "force", "torque"), ("mesh", "steps")
 """Quantities of bodies whose errors are estimated, and what these are by."""
 SCALAR_COLUMNS = ("content", "rate", "source", "imbalance", "least", "greatest", "remeshing")
@@ -88,9 +90,6 @@ def estimate_columns(dimension: int) -> tuple[str, ...]:
 
 def _components(name: str, dimension: int) -> tuple[str, ...]:
     return tuple(name + axis for axis in "xyz"[:dimension])
-
-
-_ledger_row = attrgetter(*LEDGER_COLUMNS)
 
 
 class StepCost(NamedTuple):

@@ -23,9 +23,9 @@ RINGS = 9
 """Rings of edges around flat cells that are solved with them: there the film is thin too."""
 
 MOST = 6
-"""Greatest number of vertices in those rings, over the number of vertices of flat cells. In films of .002 to
-.0001 radii nine rings have 2 to 9 times as many; around a few flat cells of a coarse mesh they are the whole mesh, whose
-factors cost far more than the iterations that they save."""
+"""Greatest number of vertices of flat cells and rings, over that of the flat cells alone. In films of .002 to .0001
+radii nine rings make it 2 to 9; around a few flat cells of a coarse mesh they are the whole mesh, whose factors cost
+far more than the iterations that they save."""
 
 _NOWHERE = -1
 """Number of the surface of vertices that are on none."""

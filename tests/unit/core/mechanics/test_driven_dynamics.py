@@ -44,6 +44,27 @@ def test_a_stroke_turns_the_whole_back_and_changes_how_it_answers(dimension: int
     np.testing.assert_allclose(body.inverse_inertia, inverse, atol=1e-9 * np.abs(inverse).max())
 
 
+def test_what_is_as_a_ball_at_the_start_alone_answers_as_it_is_later() -> None:
+    """The inverse inertia turns with it as soon as a stroke makes its moments differ."""
+
+    class Stretching:
+        mass, prescribed, driven_motions = np.ones(1), np.zeros(1, dtype=bool), np.ones(1, dtype=bool)
+
+        def inertia(self, time: float) -> FloatArray:
+            return np.diag([1.0, 1.0 + time, 1.0 + 2.0 * time])[None]
+
+        def spin(self, time: float) -> FloatArray:
+            return np.zeros((1, 3))
+
+    twist = Twist(np.zeros((1, 3)), np.array([[0.3, -0.5, 0.7]]))
+    motions: Any = Stretching()
+    still = Pose(np.zeros((1, 3)), np.array([[0.5, 0.5, 0.5, 0.5]]))
+    body = DrivenDynamics(still, twist, motions, np.zeros((1, 3)), 0.0, lambda _: np.zeros((1, 6)))
+    body.drift(0.5)
+    inverse = inverse_lab_inertia(motions.inertia(0.5), body.pose.orientation)
+    np.testing.assert_allclose(body.inverse_inertia, inverse, atol=1e-12)
+
+
 @DIMENSIONS
 def test_a_stroke_is_followed_to_second_order(dimension: int) -> None:
     motions, _ = carried(dimension)

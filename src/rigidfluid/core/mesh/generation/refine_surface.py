@@ -74,8 +74,8 @@ def long_edges(
 def long_seam_edges(
     mesh: Mesh, fluid_domain: FluidDomain, sizes: Sizes, longest: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Middles (E, d) of the edges on periodic surfaces that are longer than ``longest`` times the size wanted there, and
-    that size (E,): no vertex can be put there later."""
+    """Middles (E, d) of the edges on periodic surfaces that are longer than ``longest`` times the size wanted there,
+    and that size (E,): no vertex can be put there later."""
     edges, _ = edges_of_facets(mesh, on_periodic_surfaces(mesh, len(fluid_domain.bodies), fluid_domain.domain))
     middles, ends = mesh.points[edges].mean(axis=1), mesh.points[edges]
     wanted = wanted_size(middles, fluid_domain, sizes)
