@@ -87,9 +87,7 @@ digits).
 {rows}
 
 The worst is {worst} off, {judged} {allowed}; fluxes are at most {flux}, and speeds change by at most {change} in the
-last step. The spheres have a mass, and reach their speed within some of the steps of .02. With a sphere of nearly no
-mass the linear system of a step does not converge: a uniform velocity of all costs nothing before the drops of
-pressure are found.
+last step. The spheres have a mass, and reach their speed within some of the steps of .02.
 
 Sierou and Brady (J. Fluid Mech. 448 (2001) 115, figure 9, digitised with an error of .01) have
 
