@@ -12,8 +12,11 @@ import pytest
 import rigidfluid
 from rigidfluid.api import Fluid, FluidBackend, Scalar, ScalarOnSurface, load_results, model_of
 from rigidfluid.backends.scikit_fem import ScikitFem
+from rigidfluid.bodies.ellipsoid import Ellipsoid
 from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.mesh.generation.inside import inside_mesh
+from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.assemble import assemble
 from rigidfluid.core.setup.features import features
@@ -167,6 +170,29 @@ def test_a_backend_that_does_not_solve_inside_bodies_is_refused(monkeypatch: pyt
     monkeypatch.setattr(ScikitFem, "conduction", FluidBackend.conduction)
     with pytest.raises(SceneError, match=r"scalar.body.0.conductivity: found 0.5 with backend 'scikit-fem'"):
         model_of(scene())
+
+
+def test_cells_inside_are_straight_for_a_backend_without_curved_ones(monkeypatch: pytest.MonkeyPatch) -> None:
+    curved = []
+    for taken in (True, False):
+        monkeypatch.setattr(ScikitFem, "curved_cells", taken)
+        system = assemble(model_of(scene()))
+        assert system.fluid is not None
+        assert system.fluid.scalar is not None
+        conduction = system.fluid.scalar.conditions[0].conduction
+        assert conduction is not None
+        curved.append(len(conduction.inside().curved))
+    assert curved[0] > 0
+    assert curved[1] == 0
+
+
+def test_a_thin_ellipsoid_is_meshed_inside() -> None:
+    """With edges of this length Netgen makes facets near the tips that cross; shorter ones are asked for then."""
+    thin = Ellipsoid(Ellipsoid.Options(semi_axes=[0.2, 0.1, 0.05]), 3)
+    mesh = inside_mesh(thin, Sizes(0.1, 0.04, 0.3), 60.0)
+    corners = mesh.points[mesh.cells]
+    volume = np.linalg.det(corners[:, 1:] - corners[:, :1]).sum() / 6.0
+    assert 0.98 * thin.volume < volume < thin.volume
 
 
 def test_a_shape_that_no_mesher_fills_is_refused_when_the_scene_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
