@@ -10,8 +10,8 @@ from rigidfluid.core.mesh.generation.inside import inside_mesh
 from rigidfluid.core.mesh.location import CellFinder, locate
 from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.taylor_hood.elements.location import located, quadratic_basis
-from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.elements.location import locate_on_curves, located, quadratic_basis
+from rigidfluid.taylor_hood.elements.numbering import EDGES, Numbering
 
 
 def test_points_are_found_in_a_graded_mesh():
@@ -59,6 +59,19 @@ def test_points_just_beside_all_cells_are_looked_for_in_few():
     assert max(asked) == 64
     np.testing.assert_array_equal(cells, all_cells)
     np.testing.assert_array_equal(coordinates, all_coordinates)
+
+
+def test_points_in_a_cell_that_is_much_bent_stay_there():
+    """Its map is inverted slowly, and the neighbour's reaches a little beyond their common edge."""
+    edges = np.array(EDGES[2])
+    corners = np.array([[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], [[0.0, 0.0], [0.0, 1.0], [-1.0, 1.0]]])
+    middles = corners[:, edges].mean(axis=2)
+    middles[0, np.flatnonzero((edges == [1, 2]).all(axis=1))] -= 0.17
+    nodes = np.concatenate([corners, middles], axis=1)
+    wanted = np.array([[0.02, 0.1, 0.88], [0.05, 0.2, 0.75], [0.1, 0.05, 0.85]])
+    cell, coordinates = locate_on_curves(nodes, np.zeros(3, dtype=int), quadratic_basis(wanted) @ nodes[0])
+    np.testing.assert_array_equal(cell, 0)
+    np.testing.assert_allclose(coordinates, wanted, atol=1e-4)
 
 
 def test_points_on_a_ball_are_found_in_the_curved_cells_beside_them():
