@@ -205,11 +205,20 @@ def test_provisional_steps_and_shapes_know_what_is_inside():
     np.testing.assert_array_equal(advance.fluid["scalar_inside"], flow.fluid["scalar_inside"])
 
 
-def test_bodies_of_one_shape_share_their_elements():
+def test_bodies_of_one_shape_share_their_elements(monkeypatch):
+    made = []
+
+    class Counted(InsideSpace):
+        def __init__(self, inside):
+            super().__init__(inside)
+            made.append(inside)
+
+    monkeypatch.setattr("rigidfluid.taylor_hood.stepping.insides.InsideSpace", Counted)
     both = [conducting(k, 1.0, 0.1, length=0.08, order=1) for k in (0.5, 2.0)]
     flow, _ = stirred(2, *both, initial=first)
     spaces = flow.backend._insides.spaces
     assert spaces[0] is spaces[1]
+    assert len(made) == 1
     assert len(flow.fluid["scalar_inside"]) == 2 * spaces[0].nodes
 
 

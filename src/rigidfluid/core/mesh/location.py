@@ -12,17 +12,23 @@ INSIDE = -1e-10
 """Least barycentric coordinate of a point that counts as inside a cell [1]."""
 
 _FEW = (3, 16)
-_CANDIDATES = (*_FEW, 64, 512)
+_MANY = 64
+_CANDIDATES = (*_FEW, _MANY, 512)
 
 _FARTHEST = 2
 """Largest number of periods along each way in which an image is looked for."""
 
 
 class CellFinder:
-    """The cells (M, d+1) between ``points`` (N, d), sorted by their centres for as many searches as are wanted."""
+    """The cells (M, d+1) between ``points`` (N, d), sorted by their centres for as many searches as are wanted.
 
-    def __init__(self, points: FloatArray, cells: IntArray) -> None:
+    Targets whose least coordinate is above ``beside`` in the best of `_MANY` cells are looked for in no others.
+    """
+
+    def __init__(self, points: FloatArray, cells: IntArray, beside: float = INSIDE) -> None:
         from scipy.spatial import cKDTree
+
+        self._beside = beside
 
         self._corners = points[cells]
         self._centres = cKDTree(self._corners.mean(axis=1))
@@ -67,7 +73,7 @@ class CellFinder:
             best = np.argmax(found.min(axis=2), axis=1)
             rows = np.arange(len(missing))
             cell[missing], coordinates[missing] = near[rows, best], found[rows, best]
-            missing = missing[coordinates[missing].min(axis=1) < INSIDE]
+            missing = missing[coordinates[missing].min(axis=1) < (INSIDE if count < _MANY else self._beside)]
             if len(missing) == 0:
                 break
         return cell, coordinates

@@ -13,10 +13,9 @@ class ScalarAccount:
 
     ``content``: its integral over the fluid [scalar·length^d], and ``rate`` its derivative in time as the scheme takes
     it. ``flux`` (surfaces,): into the fluid through each surface, bodies first, with what the fluid carries.
-    ``imbalance``: what the scheme made. ``least`` and ``greatest`` values at nodes, those in bodies too [scalar];
-    ``value`` (surfaces,):
-    mean on each surface [scalar]; ``inside`` (surfaces,): mean in each body that conducts, ``value`` of all else
-    [scalar]. ``remeshing``: content that corrections at new meshes have restored so far, in
+    ``imbalance``: what the scheme made. ``least`` and ``greatest`` values at nodes, those in bodies too [scalar].
+    ``value`` (surfaces,): mean on each surface [scalar]; ``inside`` (surfaces,): mean in each body that conducts,
+    ``value`` of all else [scalar]. ``remeshing``: content that corrections at new meshes have restored so far, in
     absolute value [scalar·length^d].
     """
 

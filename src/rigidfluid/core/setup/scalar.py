@@ -131,7 +131,8 @@ def _inside(shape: Body, model: Model, at: str) -> Inside:
 
     table = model.fluid.mesh
     assert table is not None
-    sizes = Sizes(table.size, table.size_body, table.growth, order=table.order)
+    order = table.order if model.fluid.backend.part.curved_cells else 1
+    sizes = Sizes(table.size, table.size_body, table.growth, order=order)
     try:
         mesh = inside_mesh(shape, sizes, table.mesher_timeout)
     except MeshError as error:

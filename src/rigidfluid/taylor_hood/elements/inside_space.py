@@ -23,9 +23,9 @@ from rigidfluid.taylor_hood.elements.numbering import Numbering
 _POINTS = {2: 8, 3: 4}
 """Points of Gauss' rule in each direction of a facet, by dimension; across it the functions inside have bends."""
 
-_BESIDE = -2e-3
-"""Least coordinate in a cell of a point that counts as beside it: points on the body are a little outside of all cells,
-and to look for others takes most of a step in 3D."""
+_BESIDE, _BESIDE_STRAIGHT = -2e-3, -0.3
+"""Least coordinate in a cell, and in a straight one, of a point that counts as beside it: points on the body are a
+little outside of all cells, and to look for others takes most of a step in 3D."""
 
 
 class InsideSpace:
@@ -36,7 +36,7 @@ class InsideSpace:
         self.numbering = Numbering(inside.cells, len(inside.points), inside.curved if len(inside.curved) else None)
         self.geometry = inside.geometry
         self.node_points = self.numbering.node_points(self.geometry)
-        self._finder = CellFinder(inside.points, inside.cells)
+        self._finder = CellFinder(inside.points, inside.cells, _BESIDE_STRAIGHT)
 
     @property
     def nodes(self) -> int:

@@ -81,17 +81,21 @@ class ScalarSurfaces:
 
         Nodes on a body that conducts follow what is inside of it at their place.
         """
-        found, first = self._prolongation, self.first_inside
+        if not self._insides:
+            return self._prolongation
+        rows, columns, values, first = list[IntArray](), list[IntArray](), list[FloatArray](), self.first_inside
         for body, inside in self._insides.items():
             facets = self.facet_nodes[body]
-            basis = partial(_basis_in_world, inside, pose, body)
-            nodes, rows = traces(facets, node_points[facets], basis)
-            entries = rows.tocoo()
+            nodes, found = traces(facets, node_points[facets], partial(_basis_in_world, inside, pose, body))
+            entries = found.tocoo()
             mine = self.owner[nodes[entries.row]] == body
-            places = nodes[entries.row][mine], first + entries.col[mine]
-            found = found + sparse.csr_array((entries.data[mine], places), shape=found.shape)
+            rows.append(nodes[entries.row[mine]])
+            columns.append(first + entries.col[mine])
+            values.append(entries.data[mine])
             first += inside.nodes
-        return found
+        places = np.concatenate(rows), np.concatenate(columns)
+        on_bodies = sparse.csr_array((np.concatenate(values), places), shape=self._prolongation.shape)
+        return sparse.csr_array(self._prolongation + on_bodies)
 
     @cached_property
     def lumped(self) -> IntArray:

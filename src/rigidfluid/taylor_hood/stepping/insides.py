@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
 
-from rigidfluid.core.fluid.conduction import Conduction
+from rigidfluid.core.fluid.conduction import Conduction, Inside
 from rigidfluid.core.fluid.scalar import ScalarProblem
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.frames import to_world
@@ -27,11 +28,15 @@ class Insides:
     def __init__(self, problem: ScalarProblem, assembly: Callable[[Numbering], ScalarAssembly]) -> None:
         self._problem = problem
         given = {n: one.conduction for n, one in enumerate(problem.conditions) if one.conduction is not None}
-        shared = {id(one.inside()): InsideSpace(one.inside()) for one in given.values()}
-        self.spaces = {body: shared[id(one.inside())] for body, one in given.items()}
+        insides = {body: one.inside() for body, one in given.items()}
+        shapes = {id(inside): inside for inside in insides.values()}
+        made = {key: _Elements.from_inside(inside, assembly) for key, inside in shapes.items()}
+        elements = {body: made[id(inside)] for body, inside in insides.items()}
+        self.spaces = {body: each.space for body, each in elements.items()}
         self.nodes = sum(space.nodes for space in self.spaces.values())
-        parts = [_matrices(one, self.spaces[body], problem, assembly) for body, one in given.items()]
-        self.capacity, self.conductance = (_joined([each[k] for each in parts]) for k in (0, 1))
+        self.capacity = _joined([elements[body].capacity(one) for body, one in given.items()])
+        by_fluid = _joined([elements[body].conductance(one) for body, one in given.items()])
+        self.conductance = sparse.csr_array(problem.diffusivity * by_fluid)
 
     def __bool__(self) -> bool:
         return bool(self.spaces)
@@ -55,14 +60,28 @@ class Insides:
         return found
 
 
-def _matrices(
-    conduction: Conduction, space: InsideSpace, problem: ScalarProblem, assembly: Callable[[Numbering], ScalarAssembly]
-) -> tuple[sparse.csr_array, sparse.csr_array]:
-    """Matrices of capacity, whose sum is that of the body, and of conductance."""
-    integrals, still = assembly(space.numbering), np.zeros_like(space.node_points)
-    mass = integrals.scalar_matrix(space.geometry, 1.0, 0.0, still)
-    stiffness = integrals.scalar_matrix(space.geometry, 0.0, problem.diffusivity * conduction.conductivity, still)
-    return conduction.capacity / mass.sum() * mass, stiffness
+@dataclass(frozen=True, eq=False)
+class _Elements:
+    """A ``space``, with its matrices of (T, v) and (∇T, ∇v), which all bodies of one shape share."""
+
+    space: InsideSpace
+    mass: sparse.csr_array
+    stiffness: sparse.csr_array
+
+    @classmethod
+    def from_inside(cls, inside: Inside, assembly: Callable[[Numbering], ScalarAssembly]) -> _Elements:
+        space = InsideSpace(inside)
+        integrals, still = assembly(space.numbering), np.zeros_like(space.node_points)
+        mass, stiffness = (integrals.scalar_matrix(space.geometry, *each, still) for each in ((1.0, 0.0), (0.0, 1.0)))
+        return cls(space, mass, stiffness)
+
+    def capacity(self, conduction: Conduction) -> sparse.csr_array:
+        """Matrix of c (T, v), whose sum is the body's capacity."""
+        return sparse.csr_array(conduction.capacity / self.mass.sum() * self.mass)
+
+    def conductance(self, conduction: Conduction) -> sparse.csr_array:
+        """Matrix of k (∇T, ∇v)."""
+        return sparse.csr_array(conduction.conductivity * self.stiffness)
 
 
 def _joined(parts: list[sparse.csr_array]) -> sparse.csr_array:

@@ -96,12 +96,12 @@ class _System:
 def start(equations: ScalarEquations, mesh: Mesh, pose: Pose) -> FluidState:
     """Arrays of the scalar in the fluid's state at the start, with the bodies, or their images, at ``pose``."""
     surfaces, node_points = equations.surfaces, equations.assembly.numbering.node_points(mesh.geometry)
-    values, inside = surfaces.start_values(node_points), equations.insides.start_values(pose)
-    state = {**dict.fromkeys(NAMES, values), REMESHING: np.zeros(())}
+    values, remeshing = surfaces.start_values(node_points), {REMESHING: np.zeros(())}
     if not equations.insides:
-        return state
-    values += surfaces.prolongation(node_points, pose)[:, surfaces.first_inside :] @ inside
-    return state | dict.fromkeys(INSIDE, inside)
+        return dict.fromkeys(NAMES, values) | remeshing
+    inside = equations.insides.start_values(pose)
+    values = values + surfaces.prolongation(node_points, pose)[:, surfaces.first_inside :] @ inside
+    return dict.fromkeys(NAMES, values) | dict.fromkeys(INSIDE, inside) | remeshing
 
 
 def carried(fluid: FluidState) -> FluidState:
@@ -203,11 +203,8 @@ def _solution(moment: _Moment, system: _System) -> tuple[FloatArray, FloatArray]
     inside_now, inside_past = moment.inside(system.constant)
     held = surfaces.held_values(step.time, moment.node_points)
     held = np.where(surfaces.is_held, held - system.constant, 0.0)
-    spread, first, last = (
-        surfaces.prolongation(moment.node_points, step.pose),
-        surfaces.first_lumped,
-        surfaces.first_inside,
-    )
+    first, last = surfaces.first_lumped, surfaces.first_inside
+    spread = surfaces.prolongation(moment.node_points, step.pose)
     body = surfaces.representative[first:]
     own = np.concatenate([np.zeros(first), d0 * surfaces.capacities])
     conducting = d0 * insides.capacity + insides.conductance

@@ -22,6 +22,11 @@ from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Mesh, Pose
+from rigidfluid.errors import MeshError
+
+_FINER = (1.0, 0.7, 0.5)
+"""Sizes over the wanted one that a mesher is asked for, one after the other where it fails: around thin bodies edges
+are kept to their size, inside they are not, and long ones near a tip make facets that cross."""
 
 
 def can_be_filled(body: Body) -> bool:
@@ -32,6 +37,16 @@ def can_be_filled(body: Body) -> bool:
 def inside_mesh(body: Body, sizes: Sizes, timeout: float) -> Mesh:
     """Mesh of all inside a body, with the sizes of the fluid around it; a mesher that fills is stopped after
     ``timeout`` [s]; raises MeshError where there is none."""
+    failures = []
+    for finer in _FINER if body.facets is None else _FINER[:1]:
+        try:
+            return _inside_mesh(body, replace(sizes, size_body=finer * sizes.size_body), timeout)
+        except MeshError as error:
+            failures.append(error)
+    raise failures[0]
+
+
+def _inside_mesh(body: Body, sizes: Sizes, timeout: float) -> Mesh:
     d, size_body = body.dimension, sizes.size_body
     domain = InsideOfBody(body, size_body)
     sizes = replace(sizes, regions=(CurvedWall(domain.pieces[0].shape, size_body),), asked=())
