@@ -12,14 +12,14 @@ import scipy
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.facet_surface import FacetSurface
 from rigidfluid.core.geometry.facets import area_vectors
-from rigidfluid.core.geometry.mesher_unit import in_unit
+from rigidfluid.core.geometry.mesher_unit import in_space, in_unit
 from rigidfluid.core.geometry.surface import Surface
 from rigidfluid.core.mechanics.frames import to_body_frame, to_world
 from rigidfluid.core.mechanics.rigid import rotation_matrices
-from rigidfluid.core.mesh.generation.meshing import in_space, sides, turned
+from rigidfluid.core.mesh.generation.cad_of_body import cad_of_body
+from rigidfluid.core.mesh.generation.meshing import sides, turned
 from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.types import Pose
-from rigidfluid.domains.cad_of_facets import cad_of_facets
 
 
 class PlacedBody(Surface):
@@ -69,7 +69,7 @@ class PlacedBody(Surface):
         ``name``."""
         from netgen import occ
 
-        placed = turned(self._cad(unit), self.pose.orientation[0])
+        placed = turned(cad_of_body(self.shape, unit), self.pose.orientation[0])
         placed = placed.Move(occ.Vec(*in_space(in_unit(self.pose.position[0], unit))))
         for side in sides(placed, self.shape.dimension):
             side.name = name
@@ -91,8 +91,4 @@ class PlacedBody(Surface):
             areas = area_vectors(self.shape.facets.points, self.shape.facets.vertices)
             return float(np.linalg.norm(areas, axis=1).sum())
         unit, d = self.shape.bounding_radius, self.shape.dimension
-        return float(sum(side.mass for side in sides(self._cad(unit), d))) * unit ** (d - 1)
-
-    def _cad(self, unit: float) -> Any:
-        facets = self.shape.facets
-        return self.shape.cad_shape(unit) if facets is None else cad_of_facets(facets, unit)
+        return float(sum(side.mass for side in sides(cad_of_body(self.shape, unit), d))) * unit ** (d - 1)

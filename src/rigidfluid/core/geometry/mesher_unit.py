@@ -27,3 +27,8 @@ def significant(values: FloatArray) -> FloatArray:
     """Positive values rounded to 24 binary digits."""
     fraction, exponent = np.frexp(values)
     return np.asarray(np.ldexp(np.round(fraction * 2.0**24), exponent - 24))
+
+
+def in_space(vector: FloatArray) -> list[float]:
+    """Three components: those of ``vector``, then zeros."""
+    return [*map(float, vector), *[0.0] * (3 - len(vector))]

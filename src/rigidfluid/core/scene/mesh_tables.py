@@ -78,7 +78,8 @@ class MeshTable(Table):
         default=None,
         description="How the first mesh is made. cad: Netgen meshes the domain minus the bodies; fill: Netgen fills "
         "the space between the facets of both, which are kept; level_set: MMG cuts the bodies out of a mesh of the "
-        "domain, for comparison. If not given, fill if a shape is made of facets, else cad",
+        "domain, for comparison. If not given, fill if a shape is made of facets and no surfaces are periodic, "
+        "else cad",
     )
     mesher_timeout: Positive = Field(
         default=600.0, description="Time after which the mesher that fills between facets is stopped [s]"

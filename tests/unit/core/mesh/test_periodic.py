@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from facet_shapes import CUBE, TRIANGLES, binary_stl
 from mesh_tools import ball, upright
 from models import with_backend
 
@@ -225,10 +226,27 @@ def test_a_body_near_its_own_images_has_a_mesh(radius: float) -> None:
     assert cell_quality(made.points, made.cells).min() > 0.1
 
 
-def test_a_body_of_facets_is_refused_before_any_mesh_is_made() -> None:
-    square = {"type": "polygon", "points": [[0.0, 0.0], [0.2, 0.0], [0.2, 0.2]], "density": 1.0, "position": [0.6, 0.6]}
-    with pytest.raises(SceneError, match=r"mesh.inserter: found body.0 made of facets with periodic surfaces; allowed"):
-        build_system(channel(body=[square]))
+def test_a_body_of_facets_crosses_periodic_surfaces_as_from_half_a_period_further() -> None:
+    corners = [[-0.15, -0.1], [0.15, -0.1], [0.15, 0.1], [-0.15, 0.1]]
+    rest = {"type": "polygon", "points": corners, "density": 1.0, "angle": 0.3}
+    finer, paths = {"size": 0.15, "size_body": 0.04}, []
+    for x in (0.6, 1.6):
+        placed = rest | {"position": [x, 0.55]}
+        run = Simulation(channel(body=[placed], time={"end": 2.0, "step": 0.04}, mesh=finer))
+        run.go()
+        bodies = run.history.bodies
+        paths.append(np.stack([bodies["x"] - x, bodies["y"], bodies["angle"]]))
+    assert paths[0][0, -1] > 1.0
+    np.testing.assert_allclose(paths[0], paths[1], atol=2e-3)
+
+
+def test_a_cube_that_touches_a_periodic_surface_has_a_mesh(tmp_path: Path) -> None:
+    file = binary_stl(tmp_path / "cube.stl", 0.3 * CUBE, TRIANGLES)
+    cube = {"type": "stl", "file": str(file), "density": 1.0, "position": [0.15, 0.5, 0.5]}
+    mesh = Simulation(channel(dimension=3, body=[cube])).state.mesh
+    on_cube = mesh.points[np.unique(mesh.facets[mesh.markers == 0])]
+    np.testing.assert_allclose(np.ptp(on_cube, axis=0), 0.3)
+    assert cell_quality(mesh.points, mesh.cells).min() > 0.1
 
 
 def test_no_periodic_surface_repels() -> None:

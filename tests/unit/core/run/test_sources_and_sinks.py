@@ -196,12 +196,11 @@ def test_a_detector_that_is_named_knows_all_shapes_of_a_source() -> None:
 def test_shapes_of_a_source_that_no_mesher_puts_in_are_refused_at_once() -> None:
     """And not only when the first one enters."""
     square = {"type": "polygon", "points": [[0.0, 0.0], [0.1, 0.0], [0.1, 0.1], [0.0, 0.1]]}
-    faces = [{"on": "left", "type": "periodic"}, {"on": "right", "type": "periodic"}]
     entering = SOURCE | {"every": 0.2, "shape": [SHAPE[0], square]}
-    scene_from_dict(wet_tables(POST, source=[entering]))
-    scene_from_dict(wet_tables(POST, source=[SOURCE | {"every": 0.2}], boundary=faces))
-    with pytest.raises(SceneError, match=r"mesh\.inserter: found source\.0\.shape\.1 made of facets with periodic"):
-        scene_from_dict(wet_tables(POST, source=[entering], boundary=faces))
+    given = wet_tables(POST, source=[entering])
+    scene_from_dict(given)
+    with pytest.raises(SceneError, match=r"mesh\.inserter: found 'cad' with source\.0\.shape\.1 made of facets"):
+        scene_from_dict(given | {"mesh": given["mesh"] | {"inserter": "cad"}})
 
 
 def test_a_law_leaves_with_the_body_that_it_names() -> None:

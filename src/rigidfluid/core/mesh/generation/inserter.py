@@ -20,9 +20,10 @@ Way = Literal["cad", "fill", "level_set"]
 class Inserter:
     """Way of making the first mesh, and how long it may take.
 
-    ``way``: "cad", Netgen meshes the difference of CAD shapes; "fill", it fills between the facets of domain and
-    bodies; "level_set", MMG cuts bodies out of a mesh of the domain. None: "cad" where all have CAD shapes, else
-    "fill". ``timeout``: a mesher that fills is stopped after it [s].
+    ``way``: "cad", Netgen meshes the difference of CAD shapes, which are made of bodies' facets too where surfaces are
+    periodic; "fill", it fills between the facets of domain and bodies; "level_set", MMG cuts bodies out of a mesh of
+    the domain. None: "cad" where all have CAD shapes or surfaces are periodic, else "fill". ``timeout``: a mesher that
+    fills is stopped after it [s].
     """
 
     way: Way | None = None
@@ -33,14 +34,15 @@ class Inserter:
         needs it."""
         of_facets = [f"{field}.{i}" for i, body in enumerate(bodies) if body.facets is not None]
         of_facets += ["the domain"] if domain.facets is not None else []
+        if domain.periodic:
+            if domain.facets is not None or self.way not in ("cad", None):
+                found = f"{self.way!r}" if self.way else "the domain made of facets"
+                allowed, remedy = "'cad', and a domain that is not made of facets", "Leave the key out."
+                raise MeshError("mesh.inserter", f"{found} with periodic surfaces", allowed, remedy)
+            return "cad"
         if self.way == "cad" and of_facets:
             found = f"'cad' with {of_facets[0]} made of facets"
             raise MeshError("mesh.inserter", found, "'fill' or 'level_set' for facets", "Leave the key out.")
-        if domain.periodic and (of_facets or self.way not in ("cad", None)):
-            found = f"{self.way!r}" if self.way else f"{of_facets[0]} made of facets"
-            allowed = "'cad', and shapes that are not made of facets, as balls and ellipsoids"
-            remedy = "Choose other shapes." if of_facets else "Leave the key out."
-            raise MeshError("mesh.inserter", f"{found} with periodic surfaces", allowed, remedy)
         return self.way or ("fill" if of_facets else "cad")
 
 

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
-from rigidfluid.core.geometry.mesher_unit import in_unit, mesher_unit
+from rigidfluid.core.geometry.mesher_unit import in_space, in_unit, mesher_unit
 from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
+from rigidfluid.core.mesh.generation.cad_of_body import cad_of_body
 from rigidfluid.core.mesh.generation.on_surfaces import put_on_surfaces
 from rigidfluid.core.mesh.generation.periodic import identify, on_periodic_surfaces, with_exact_images
 from rigidfluid.core.mesh.size.size_field import Sizes
@@ -204,7 +205,7 @@ def fluid_shape(fluid_domain: FluidDomain, size_body: FloatArray, unit: float) -
     numbers, centres = images_in_box(fluid_domain)
     longest = in_unit(size_body, unit).tolist()
     for i, centre in zip(numbers.tolist(), in_unit(centres, unit), strict=True):
-        placed.append(turned(bodies[i].cad_shape(unit), pose.orientation[i]).Move(occ.Vec(*in_space(centre))))
+        placed.append(turned(cad_of_body(bodies[i], unit), pose.orientation[i]).Move(occ.Vec(*in_space(centre))))
         for side in sides(placed[-1], domain.dimension):
             side.name, side.maxh = str(i), longest[i]
     radius = np.array([bodies[i].bounding_radius for i in numbers])
@@ -271,11 +272,6 @@ def turned(shape: Any, orientation: FloatArray) -> Any:
     if angle == 0.0:
         return shape
     return shape.Rotate(occ.Axis(occ.Pnt(0, 0, 0), occ.Dir(*axis)), float(np.degrees(angle)))
-
-
-def in_space(vector: FloatArray) -> list[float]:
-    """Three components: those of ``vector``, then zeros."""
-    return [*map(float, vector), *[0.0] * (3 - len(vector))]
 
 
 def from_netgen(netgen: Any, dimension: int) -> Mesh:

@@ -1,4 +1,4 @@
-"""Polygons and polyhedra as CAD shapes, so that they can be taken out of others."""
+"""Bodies as CAD shapes, so that they can be taken out of others: polygons and polyhedra by their facets."""
 
 from __future__ import annotations
 
@@ -6,12 +6,17 @@ from typing import Any
 
 from rigidfluid.core.geometry.arrays import IntArray
 from rigidfluid.core.geometry.facets import Facets
-from rigidfluid.core.geometry.mesher_unit import in_unit
-from rigidfluid.core.mesh.generation.meshing import in_space
+from rigidfluid.core.geometry.mesher_unit import in_space, in_unit
+from rigidfluid.core.model.body import Body
 
 
-def cad_of_facets(facets: Facets, unit: float) -> Any:
-    """A ``netgen.occ`` face (2D) or solid (3D) with the corners of one closed surface, lengths over ``unit``."""
+def cad_of_body(body: Body, unit: float) -> Any:
+    """A ``netgen.occ`` face (2D) or solid (3D) of a body in its own frame, lengths over ``unit``."""
+    return body.cad_shape(unit) if body.facets is None else _cad_of_facets(body.facets, unit)
+
+
+def _cad_of_facets(facets: Facets, unit: float) -> Any:
+    """A face (2D) or solid (3D) with the corners of one closed surface."""
     from netgen import occ
 
     points = [occ.Pnt(*in_space(point)) for point in in_unit(facets.points, unit)]
