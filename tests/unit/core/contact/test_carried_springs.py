@@ -81,7 +81,7 @@ def test_springs_of_other_pairs_are_none():
     springs = springs_at(corners(points), np.array([[0.1, 0.0]]), np.array([5.0]), POSE)
     assert not carried_displacement(springs, corners(points, wall=3), POSE).any()
     assert not carried_displacement(springs, corners(points, body=1), POSE).any()
-    assert carried_displacement(springs, select(corners(points), [False]), POSE).shape == (0, 2)
+    assert carried_displacement(springs, select(corners(points), np.array([False])), POSE).shape == (0, 2)
 
 
 def test_relaxed_springs_and_contacts_without_any_are_forgotten():
