@@ -18,9 +18,9 @@ from rigidfluid.core.mesh.adaptation.smooth_cut import smooth_cut
 from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation.periodic import Seams, on_periodic_surfaces
-from rigidfluid.core.mesh.generation.refine_surface import bisect, edges_of_facets, one_per_cell
+from rigidfluid.core.mesh.generation.refine_surface import bisect, long_seam_edges, one_per_cell
 from rigidfluid.core.mesh.mesh_quality import cell_quality
-from rigidfluid.core.mesh.size.size_field import LONGEST, Sizes, wanted_size
+from rigidfluid.core.mesh.size.size_field import LONGEST, Sizes
 from rigidfluid.core.mesh.topology import distinct_edges
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.types import Mesh, Periods
@@ -49,9 +49,7 @@ def is_badly_cut(mesh: Mesh, fluid_domain: FluidDomain, sizes: Sizes) -> bool:
         return True
     if (cell_quality(mesh.points, mesh.cells[on_seam[mesh.cells].any(axis=1)]) < WELL_SHAPED).any():
         return True
-    edges, _ = edges_of_facets(mesh, seam)
-    length = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1)
-    return bool((length > LONGEST * wanted_size(mesh.points[edges].mean(axis=1), fluid_domain, sizes)).any())
+    return len(long_seam_edges(mesh, fluid_domain, sizes, LONGEST)[0]) > 0
 
 
 def crosses_bodies(mesh: Mesh, bodies: int, domain: Domain) -> bool:
