@@ -10,7 +10,7 @@ import scipy
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.geometry.images import originals
-from rigidfluid.core.geometry.mesher_unit import in_unit
+from rigidfluid.core.geometry.mesher_unit import in_space, in_unit
 from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.types import Mesh
@@ -57,7 +57,7 @@ def identify(sides: Any, first: int, domain: Domain, unit: float) -> None:
 
     for pair, way in zip(domain.periodic, in_unit(domain.lattice, unit), strict=True):
         one, two = (occ.ListOfShapes([side for side in sides if side.name == str(first + piece)]) for piece in pair)
-        moved = occ.gp_Trsf.Translation(occ.Vec(*way, *[0.0] * (3 - len(way))))
+        moved = occ.gp_Trsf.Translation(occ.Vec(*in_space(way)))
         one.Identify(two, f"{pair[0]}", occ.IdentificationType.PERIODIC, moved)
 
 
