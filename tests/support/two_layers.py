@@ -24,6 +24,7 @@ from rigidfluid.core.mesh.generation.inside import InsideOfBody, inside_mesh
 from rigidfluid.core.mesh.generation.meshing import generate_mesh
 from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.model.types import Mesh, Pose
+from rigidfluid.core.setup.scalar import cells_inside
 from rigidfluid.testing.fluid.exact import problem
 from rigidfluid.testing.fluid.flow import Flow
 
@@ -44,10 +45,7 @@ def ball(radius: float, dimension: int) -> Sphere:
 @cache
 def inside(radius: float, dimension: int, length: float, order: int = 2) -> Inside:
     """Cells inside a ball, with edges of this ``length``."""
-    mesh = inside_mesh(ball(radius, dimension), Sizes(length, length, 0.2, order=order), 60.0)
-    if mesh.curved is None:
-        return Inside(mesh.points, mesh.cells, np.zeros((0, 2), dtype=np.int64), np.zeros((0, dimension)))
-    return Inside(mesh.points, mesh.cells, mesh.curved.vertices, mesh.curved.middles)
+    return cells_inside(inside_mesh(ball(radius, dimension), Sizes(length, length, 0.2, order=order), 60.0))
 
 
 def conducting(

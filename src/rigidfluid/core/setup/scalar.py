@@ -25,6 +25,7 @@ from rigidfluid.errors import MeshError, SceneError
 if TYPE_CHECKING:
     from rigidfluid.core.model.body import Body
     from rigidfluid.core.model.domain import Domain
+    from rigidfluid.core.model.types import Mesh
     from rigidfluid.core.setup.fluid import Fluid
     from rigidfluid.core.setup.model import Model
 
@@ -138,9 +139,14 @@ def _inside(shape: Body, model: Model, at: str) -> Inside:
     except MeshError as error:
         remedy = "Leave it out, so that the body has one value, or change mesh.size_body."
         raise MeshError(f"{at}.conductivity", error.found, "a body that can be meshed inside", remedy) from error
+    return cells_inside(mesh)
+
+
+def cells_inside(mesh: Mesh) -> Inside:
+    """The cells of a body's inside, and their curved edges, of a ``mesh`` of it."""
     curved = mesh.curved
     if curved is None:
-        return Inside(mesh.points, mesh.cells, np.zeros((0, 2), dtype=np.int64), np.zeros((0, shape.dimension)))
+        return Inside(mesh.points, mesh.cells, np.zeros((0, 2), dtype=np.int64), mesh.points[:0])
     return Inside(mesh.points, mesh.cells, curved.vertices, curved.middles)
 
 
