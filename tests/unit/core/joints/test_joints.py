@@ -185,10 +185,7 @@ def test_joined_bodies_do_not_repel_but_the_next_ones_do():
     system, parts = build_system(scene), model_of(scene)
     near = initial_contacts(parts, system.pose, np.inf)
     acting = interacting(system, near)
-    names = {
-        tuple(sorted(system.surfaces[i] for i in pair))
-        for pair in zip(acting.body_a, acting.body_b, strict=True)
-    }
+    names = {tuple(sorted(system.surfaces[i] for i in pair)) for pair in zip(acting.body_a, acting.body_b, strict=True)}
     assert ("a", "b") not in names
     assert ("b", "c") not in names
     assert {("a", "c"), ("b", "d"), ("a", "left")} <= names
