@@ -8,12 +8,14 @@ PLUGINS := $(wildcard plugins/*)
 # hangs ends its process, and the other goes on and names it.
 PARALLEL := -n 2 --dist worksteal --timeout-method thread
 PYTEST := $(BIN)/pytest $(PARALLEL)
-# Files in which tests need plug-ins, PyVista or notebooks, and files in which they need DOLFINx.
+# Files in which tests need plug-ins, PyVista or notebooks; files and contracts in which they need DOLFINx; and those that
+# start processes of MPI, one after another.
 WITH_PLUGINS := tests/unit/core/run/test_resumption.py tests/unit/core/run/test_shared_run.py tests/unit/benchmarks \
 	tests/unit/docs/test_validation_pages.py tests/unit/core/output/test_fluid_fields.py tests/unit/post/test_run_results.py \
 	tests/unit/post/test_notebook.py tests/unit/docs/test_site_code.py::test_how_to_pages_run
-WITH_DOLFINX := tests/contract/test_fluid_backends.py tests/unit/backends/test_dolfinx.py \
-	tests/unit/benchmarks/test_backends_benchmark.py tests/unit/benchmarks/test_parallel_benchmark.py tests/mpi
+WITH_DOLFINX := $(addprefix tests/contract/test_fluid_backends.py::,TestDolfinx TestDolfinxBySchurComplement) \
+	tests/unit/backends/test_dolfinx.py tests/unit/benchmarks/test_backends_benchmark.py
+WITH_MPI := tests/unit/benchmarks/test_parallel_benchmark.py tests/mpi
 
 # Each package that rigidfluid itself names is called somewhere here.
 WITH_LOWEST := $(addprefix tests/unit/,test_cli.py test_registry.py core/case core/scene core/output core/mesh/test_remesh.py \
@@ -59,7 +61,8 @@ test-plugins: .venv/.installed-plugins
 # In Debian 13's packages, in a folder; see tools/dolfinx.
 test-dolfinx:
 	tools/dolfinx make
-	tools/dolfinx run python3 -m pytest -m 'not validation' $(WITH_DOLFINX)
+	tools/dolfinx run python3 -m pytest $(PARALLEL) --timeout 600 -m 'not validation' $(WITH_DOLFINX)
+	tools/dolfinx run python3 -m pytest --timeout 1800 -m 'not validation' $(WITH_MPI)
 
 # The documentation site, in site/; a warning, as of a link that leads nowhere, ends it.
 docs: .venv/.installed-docs

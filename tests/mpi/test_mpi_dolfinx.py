@@ -103,7 +103,7 @@ def test_processes_respond_to_impulses_as_one_does(printed, count, scene):
 
 
 def test_a_step_keeps_no_memory(printed):
-    assert_keeps_no_memory(printed(3, STEPS, CHANNEL, [20, 20, 20, 20]), 20)
+    assert_keeps_no_memory(printed(3, STEPS, CHANNEL, [10, 10, 10, 10]), 10)
 
 
 def test_a_response_keeps_no_memory(printed):

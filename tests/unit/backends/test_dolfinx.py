@@ -149,7 +149,7 @@ def iterations(scene, steps=2):
 def test_iterations_depend_neither_on_the_cells_nor_on_the_step():
     scene = three_dimensional(backend="dolfinx", solver="schur", tolerance=1e-8).to_dict()
     meshes = [{"size": 3 * size, "size_body": size} for size in (0.25, 0.125)]
-    steps = [scene["time"] | {"step": step} for step in (0.0002, 0.002, 0.02)]
+    steps = [scene["time"] | {"step": step} for step in (0.0002, 0.02)]
     counts = [iterations({**scene, "mesh": mesh, "time": step}) for mesh in meshes for step in steps]
     assert max(counts) <= min(2 * min(counts), 45), counts
 
