@@ -16,7 +16,7 @@ from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.model.flow_error import ErrorRate, MeshVelocity, RefinedFlow, Refinement
 from rigidfluid.core.model.fluid_backend import Filling, FluidBackend
 from rigidfluid.core.model.part import PartOptions
-from rigidfluid.core.model.types import Advance, Fields, FluidState, Mesh, Pose, Response, Step, Twist
+from rigidfluid.core.model.types import Advance, Fields, FluidState, InsideFields, Mesh, Pose, Response, Step, Twist
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.system.coupled import CoupledMatrix
 from rigidfluid.taylor_hood.system.discretisation import Discretisation
@@ -183,6 +183,14 @@ class TaylorHoodBackend(FluidBackend):
         pressure = numbering.interpolate_to_nodes(fluid["pressure"])
         points = numbering.node_points(mesh.geometry)
         return Fields(points, numbering.cell_nodes, fluid["velocity"], pressure, fluid.get("scalar"))
+
+    @final
+    def insides(self, fluid: FluidState, mesh: Mesh, pose: Pose) -> InsideFields | None:
+        if self.problem.scalar is None or not (insides := self._insides_of_bodies()):
+            return None
+        from rigidfluid.taylor_hood.stepping.scalar_step import INSIDE
+
+        return insides.fields(fluid[INSIDE[0]], mesh.images_of(pose))
 
     @final
     def probe(self, fluid: FluidState, mesh: Mesh, points: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -12,7 +12,7 @@ from rigidfluid.core.geometry.value_types import describe
 from rigidfluid.core.geometry.wrong import Wrong
 from rigidfluid.core.model.flow_error import Refinement
 from rigidfluid.core.model.scalar_account import ScalarAccount
-from rigidfluid.core.model.types import Advance, Fields, Response, Step, Twist, Wrench
+from rigidfluid.core.model.types import Advance, Fields, InsideFields, Response, Step, Twist, Wrench
 
 _POWERS = ("boundary_power", "spurious_flux", "grad_div", "source_power")
 _ENERGIES = ("kinetic_energy", "dissipation", "dissipation_midway", *_POWERS)
@@ -110,6 +110,17 @@ def fields(answer: Any, *_: Any) -> None:
     if answer.scalar is not None:
         refuse_other_rows(answer.scalar, (count,), "scalar")
     refuse_other_shape(answer.cells, np.shape(answer.cells), "cells", "iu")
+
+
+def insides(answer: Any, *_: Any) -> None:
+    """Refuse what is neither None nor a scalar inside bodies."""
+    if answer is None:
+        return
+    refuse_others(answer, InsideFields)
+    refuse_other_rows(answer.points, np.shape(answer.points), "points")
+    refuse_other_rows(answer.scalar, (len(answer.points),), "scalar")
+    for name, shape in (("cells", np.shape(answer.cells)), ("body", (len(answer.points),))):
+        refuse_other_shape(getattr(answer, name), shape, name, "iu")
 
 
 def probes(answer: Any, part: Any, fluid: Any, mesh: Any, points: Any) -> None:

@@ -24,6 +24,7 @@ from rigidfluid.core.model.types import (
     Advance,
     Fields,
     FluidState,
+    InsideFields,
     Mesh,
     Pose,
     Response,
@@ -172,6 +173,11 @@ class FluidBackend(Part):
     @gives(backends.fields)
     def fields(self, fluid: FluidState, mesh: Mesh) -> Fields:
         """Velocity and pressure for output."""
+
+    @gives(backends.insides)
+    def insides(self, fluid: FluidState, mesh: Mesh, pose: Pose) -> InsideFields | None:
+        """The scalar inside the bodies that conduct it, for output; None where there are none."""
+        return None
 
     @abstractmethod
     @gives(backends.probes)

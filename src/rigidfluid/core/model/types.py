@@ -392,3 +392,14 @@ class Fields:
     def part(self, nodes: IntArray, cells: IntArray) -> Fields:
         """The values at some ``nodes`` (K,), and ``cells`` (L, b) between these."""
         return Fields(**{name: value[nodes] for name, value in self.nodal_values.items()}, cells=cells)
+
+
+@dataclass(frozen=True)
+class InsideFields:
+    """The scalar inside bodies that conduct it: ``points`` (N, d), quadratic ``cells`` (M, 6 | 10) in VTK's order,
+    ``scalar`` (N,), and the number of the ``body`` (N,) around each point."""
+
+    points: FloatArray
+    cells: IntArray
+    scalar: FloatArray
+    body: IntArray

@@ -72,7 +72,7 @@ _STATE: Shapes = {
     },
 }
 
-_SHAPES: Shapes = {"state": _STATE, "extremes": {"highest_speed": "n"}, "sizes": "o3"}
+_SHAPES: Shapes = {"state": _STATE, "extremes": {"highest_speed": "n"}, "sizes": "o4"}
 
 _INFINITE = ("gaps", "smallest_gap", "since_start", "error", "with_contacts")
 _UNKNOWN = ("radius_a", "radius_b", "effective_radius", "curvatures", "load_before", "quality")

@@ -1,4 +1,4 @@
-"""Bodies and contacts of one state as points with numbers and vectors."""
+"""Bodies and contacts of one state as points with numbers and vectors, and what bodies conduct at the points inside."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.system import System
-from rigidfluid.core.output.vtu import BODIES, CONTACTS, in_space, write_grid
+from rigidfluid.core.model.types import InsideFields
+from rigidfluid.core.output.vtu import BODIES, CONTACTS, INSIDES, QUADRATIC, in_space, write_grid
 
 _VERTEX, _LINE = 1, 3
 """VTK's numbers of cells of one point and of two."""
@@ -34,8 +35,11 @@ class PointSet:
 
 
 def point_sets(system: System, state: State, forces: FloatArray) -> dict[str, PointSet]:
-    """Bodies and contacts of a state by the names of their datasets, with the ``forces`` of the contacts (m, d)."""
-    return {BODIES: _body_points(system, state), CONTACTS: _contact_points(system, state, forces)}
+    """Bodies, contacts and insides of bodies that conduct, by the names of their datasets, with the ``forces`` of the
+    contacts (m, d)."""
+    found = {BODIES: _body_points(system, state), CONTACTS: _contact_points(system, state, forces)}
+    insides = system.backend.insides(state.fluid, state.mesh, state.pose)
+    return found if insides is None else {**found, INSIDES: _inside_points(insides)}
 
 
 def _body_points(system: System, state: State) -> PointSet:
@@ -75,6 +79,12 @@ def _contact_points(system: System, state: State, forces: FloatArray) -> PointSe
     }
     points = np.stack([near.point_a[acting], near.point_b[acting]], axis=1).reshape(-1, system.dimension)
     return PointSet(points, arrays, _LINE, ends)
+
+
+def _inside_points(insides: InsideFields) -> PointSet:
+    """The nodes inside bodies with the ``scalar`` and the number of the ``body`` that each is in."""
+    arrays: dict[str, FloatArray | IntArray] = {"scalar": insides.scalar, "body": insides.body}
+    return PointSet(insides.points, arrays, QUADRATIC[insides.cells.shape[1]], insides.cells)
 
 
 def _flat(values: FloatArray | IntArray) -> FloatArray | IntArray:

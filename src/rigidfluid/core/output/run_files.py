@@ -74,10 +74,10 @@ FILES = (
         "velocity, pressure, vorticity, and what else the scene has; not without a fluid",
     ),
     Files(
-        "`fields/000000.bodies.vtu`, `fields/000000.contacts.vtu`, …",
-        r"fields/\d{6,}\.(bodies|contacts)\.vtu",
+        "`fields/000000.bodies.vtu`, `fields/000000.contacts.vtu`, `fields/000000.insides.vtu`, …",
+        r"fields/\d{6,}\.(bodies|contacts|insides)\.vtu",
         "each `output.every`",
-        "bodies with twists and forces; contacts with their forces",
+        "bodies with twists and forces; contacts with their forces; what is inside bodies that conduct",
     ),
     Files("`state.h5`", r"state(\.\d+)?\.h5(\.part)?", "each `output.every`", "checkpoint for `--resume`"),
     Files("`summary.json`", r"summary\.json(\.part)?", "at the end", "the figures that matter, and what they cost"),

@@ -23,7 +23,7 @@ from rigidfluid.core.output.disk import open_new, replace_text
 from rigidfluid.core.output.result_file import require_result
 from rigidfluid.errors import OutputError
 
-FLUID, BODIES, CONTACTS = DATASETS = "fluid", "bodies", "contacts"
+FLUID, BODIES, CONTACTS, INSIDES = DATASETS = "fluid", "bodies", "contacts", "insides"
 """Names of the data sets of an output time; the number of its part in a PVD file is its place here."""
 
 QUADRATIC = {6: 22, 10: 24}  # VTK's numbers for the quadratic triangle and tetrahedron

@@ -12,7 +12,7 @@ from rigidfluid.core.fluid.conduction import Conduction, Inside
 from rigidfluid.core.fluid.scalar import ScalarProblem
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.frames import to_world
-from rigidfluid.core.model.types import Pose
+from rigidfluid.core.model.types import InsideFields, Pose
 from rigidfluid.taylor_hood.elements.inside_space import InsideSpace
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 from rigidfluid.taylor_hood.elements.scalar_assembly import ScalarAssembly
@@ -48,6 +48,18 @@ class Insides:
             given = self._problem.conditions[body].value or self._problem.initial
             found.append(given(0.0, to_world(pose, body, space.node_points)))
         return np.concatenate(found)
+
+    def fields(self, values: FloatArray, pose: Pose) -> InsideFields:
+        """The ``values`` (nodes,) in the cells inside all bodies, when these, or their images, are at ``pose``."""
+        spaces = list(self.spaces.values())
+        counts = [space.nodes for space in spaces]
+        first = np.cumsum([0, *counts[:-1]])
+        return InsideFields(
+            points=np.concatenate([to_world(pose, body, space.node_points) for body, space in self.spaces.items()]),
+            cells=np.concatenate([space.numbering.cell_nodes + n for space, n in zip(spaces, first, strict=True)]),
+            scalar=values,
+            body=np.repeat(list(self.spaces), counts),
+        )
 
     def means(self, on_surfaces: FloatArray, values: FloatArray) -> FloatArray:
         """Mean of ``values`` (nodes,) in each body that conducts, and that ``on_surfaces`` (surfaces,) of all else."""

@@ -17,10 +17,12 @@ from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.mesh.generation.inside import inside_mesh
 from rigidfluid.core.mesh.size.size_field import Sizes
+from rigidfluid.core.output.vtu import read_pvd
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.core.setup.assemble import assemble
 from rigidfluid.core.setup.features import features
 from rigidfluid.errors import MeshError, SceneError
+from rigidfluid.taylor_hood.elements.facet_integrals import area_at_points
 
 DISK: dict[str, Any] = {"type": "sphere", "name": "disk", "radius": 0.15, "density": 1.2, "position": [0.5, 1.4]}
 CONDUCTS: dict[str, Any] = {"on": "disk", "value": "1 + 4*(x - 0.5)", "capacity": 2.0, "conductivity": 0.5}
@@ -82,6 +84,30 @@ def test_a_run_is_resumed_to_the_last_bit(tmp_path: Path) -> None:
     for name in ("scalar.csv", "scalar_fluxes.csv", "bodies.csv", "energy.csv"):
         assert (tmp_path / "whole" / name).read_bytes() == (tmp_path / "parts" / name).read_bytes()
     assert np.ptp(whole_content(load_results(tmp_path / "parts"))) < 1e-12
+
+
+def test_what_is_inside_is_a_block_of_the_fields_that_turns_with_the_disk(tmp_path: Path) -> None:
+    meshio = pytest.importorskip("meshio")
+    history = rigidfluid.run(scene(), tmp_path)
+    bodies, fluxes = history.bodies, history.scalar_fluxes
+    series = read_pvd(tmp_path / "fields.pvd", "insides")
+    assert [time for time, _ in series] == pytest.approx([0.0, 0.06, 0.12])
+    start = None
+    for time, path in series:
+        row = np.argmin(np.abs(bodies["time"] - time))
+        read = meshio.read(path)
+        centre, angle = np.array([bodies["x"][row], bodies["y"][row]]), bodies["angle"][row]
+        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        own = (read.points[:, :2] - centre) @ turn
+        start = own if start is None else start
+        np.testing.assert_allclose(own, start, rtol=0.0, atol=1e-12)
+        assert np.linalg.norm(own, axis=1).max() == pytest.approx(0.15, rel=1e-9)
+        assert not read.point_data["body"].any()
+        cells = read.cells_dict["triangle6"]
+        shapes, area = area_at_points(read.points[cells], 4)
+        mean = np.average(read.point_data["scalar"][cells] @ shapes.T, weights=area[:, :, 2])
+        now = (fluxes["surface"] == "disk") & np.isclose(fluxes["time"], time)
+        assert mean == pytest.approx(fluxes["inside"][now][0] if time > 0.0 else 1.0, rel=1e-5)
 
 
 def in_periodic_channel(start: float) -> Any:
