@@ -23,7 +23,7 @@ WITH_LOWEST := $(addprefix tests/unit/,test_cli.py test_registry.py core/case co
 	post/studies/test_random_samples.py) \
 	tests/contract/test_bodies.py tests/contract/test_force_laws.py
 
-.PHONY: run fast test test-wheel test-lowest test-long test-plugins test-dolfinx install lint docs mutants pages validate nightly stale bench lock clean
+.PHONY: run fast test test-wheel test-lowest test-long test-nightly test-plugins test-dolfinx install lint docs mutants pages validate nightly stale bench lock clean
 
 run: install
 	$(BIN)/rigidfluid run scenes/falling_disk.toml
@@ -52,7 +52,11 @@ test-wheel:
 	$(PYTHON) tools/installed_size.py .venv-wheel
 
 test-long: .venv/.installed-test
-	$(PYTEST) --timeout 1800 --durations 40 -m 'long and not validation'
+	$(PYTEST) --timeout 1800 --durations 40 -m 'long and not nightly and not validation'
+
+# A twentieth of the long tests takes two thirds of their time.
+test-nightly: .venv/.installed-test
+	$(PYTEST) --timeout 3600 --durations 40 -m nightly
 
 test-plugins: .venv/.installed-plugins
 	for plugin in $(PLUGINS); do (cd $$plugin && $(CURDIR)/$(BIN)/python -m pytest --timeout 600) || exit 1; done

@@ -30,7 +30,7 @@ def bounce(step, end=0.032, epsilon=1e-7, contact=None, **changes):
 @pytest.mark.parametrize(
     ("stepping", "speed", "end", "largest"),
     [
-        ("substeps", 5.0, 0.032, 7e-4),
+        pytest.param("substeps", 5.0, 0.032, 7e-4, marks=pytest.mark.nightly),
         ("substeps", 0.0, 0.036, 3e-4),
         pytest.param("implicit", 0.0, 0.036, 2.5e-4, marks=pytest.mark.validation),
     ],
@@ -52,6 +52,7 @@ def test_second_order_through_a_contact(stepping, speed, end, largest):
     assert np.log2(second / third) > 1.8
 
 
+@pytest.mark.nightly
 def test_implicit_contacts_followed_from_a_mesh_turn_the_disk_back():
     history = rigidfluid.run(bounce(5e-4, contact={"stepping": "implicit", "detector": "narrow_band"}))
     assert history.summary["rejected_steps"] == 0
@@ -64,7 +65,7 @@ def test_implicit_contacts_followed_from_a_mesh_turn_the_disk_back():
     ("stepping", "epsilon"),
     [
         ("substeps", 1e-12),
-        ("implicit", 1e-10),
+        pytest.param("implicit", 1e-10, marks=pytest.mark.nightly),
         *(pytest.param("substeps", epsilon, marks=pytest.mark.validation) for epsilon in (1e-8, 1e-10)),
         pytest.param("implicit", 1e-8, marks=pytest.mark.validation),
     ],

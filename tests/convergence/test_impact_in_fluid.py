@@ -29,7 +29,7 @@ def spin(step: float) -> float:
     return float(run.state.twist.angular_velocity[0, 0])
 
 
-@pytest.mark.parametrize(("figure", "allowed"), [(rebound, 0.01), (spin, 0.002)])
+@pytest.mark.parametrize(("figure", "allowed"), [(rebound, 0.01), pytest.param(spin, 0.002, marks=pytest.mark.nightly)])
 def test_steps_that_are_shortened_in_the_impact_are_near_each_other(
     figure: Callable[[float], float], allowed: float
 ) -> None:

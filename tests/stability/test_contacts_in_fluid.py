@@ -170,6 +170,7 @@ def test_without_inertia_of_the_fluid_a_disk_sinks_onto_the_floor_and_stays():
     assert np.abs(track(history, "vy")).max() <= 1.02 * freely
 
 
+@pytest.mark.nightly
 def test_a_disk_that_two_walls_squeeze_gains_and_loses_next_to_nothing():
     refuse_imbalance(rigidfluid.run(scenes.squeezed(4.0 * MILLISECOND)), 0.01, 0.05)
 

@@ -24,7 +24,17 @@ def is_heavy(case: Case) -> bool:
     return case.heavy or (step in ("1 ms", "2 ms") and f"{stem}, Δt 4 ms" in NAMES)
 
 
-LIGHT = [pytest.param(case, id=case.name) for case in CASES if not is_heavy(case)]
+SLOW = {
+    *("fluid, stack of two, Δt 4 ms", "fluid, ellipse, tip first, Δt 4 ms", "fluid, spin 1e4, Δt 4 ms"),
+    *(f"spin 1e4, semi-axes {axes}" for axes in ("(0.2, 0.1)", "(0.2, 0.01)", "(0.2, 0.15, 0.1)")),
+}
+"""Those of the others that take a fifth of their time."""
+
+LIGHT = [
+    pytest.param(case, id=case.name, marks=pytest.mark.nightly if case.name in SLOW else ())
+    for case in CASES
+    if not is_heavy(case)
+]
 GAINED = "energy created"
 KNOWN = Demand(GAINED, at_most=0.03)
 

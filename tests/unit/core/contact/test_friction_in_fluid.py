@@ -45,7 +45,7 @@ def held(step, stiffness=SPRING["tangential_stiffness"], stepping="substeps"):
     return run_to_end(disk_on_slope(0.1, step, tangential_stiffness=stiffness, stepping=stepping))
 
 
-@pytest.mark.parametrize("step", [4e-3, pytest.param(1e-3, marks=pytest.mark.long)])
+@pytest.mark.parametrize("step", [4e-3, pytest.param(1e-3, marks=[pytest.mark.long, pytest.mark.nightly])])
 def test_a_disk_that_hits_obliquely_loses_by_friction_and_film_and_makes_no_energy(step):
     """Film, roughness, restitution and friction act in one impact. Of the change of speed across the wall the film
     takes a part, which does not press the surfaces together; μ times the rest is lost along the wall."""
@@ -97,6 +97,7 @@ def test_it_is_resumed_after_new_meshes_with_the_same_bits(tmp_path):
 
 
 @pytest.mark.long
+@pytest.mark.nightly
 def test_implicit_steps_hold_it_alike():
     state, resolved = held(4e-3, stepping="implicit"), held(4e-3)
     assert abs(state.ledger.residual) < 5e-3 * abs(state.ledger.gravity)

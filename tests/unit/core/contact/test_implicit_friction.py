@@ -47,7 +47,7 @@ def assert_slides(middle, end, steepness, time):
     assert gained == pytest.approx(time * acceleration, rel=0.01)
 
 
-@pytest.mark.parametrize("step", [4e-3, pytest.param(5e-4, marks=pytest.mark.long)])
+@pytest.mark.parametrize("step", [4e-3, pytest.param(5e-4, marks=[pytest.mark.long, pytest.mark.nightly])])
 def test_friction_holds_a_disk_just_below_its_angle(step):
     """It starts with relaxed springs, and slips until the excess of friction over its weight has stopped it."""
     state = run_to_end(disk_on_slope(0.99, 2.6, step))
@@ -55,7 +55,7 @@ def test_friction_holds_a_disk_just_below_its_angle(step):
     assert_keeps_its_account(state)
 
 
-@pytest.mark.parametrize("step", [4e-3, pytest.param(5e-4, marks=pytest.mark.long)])
+@pytest.mark.parametrize("step", [4e-3, pytest.param(5e-4, marks=[pytest.mark.long, pytest.mark.nightly])])
 def test_a_disk_slides_just_above_that_angle(step):
     middle, end = (run_to_end(disk_on_slope(1.01, time, step)) for time in (0.5, 1.0))
     assert_slides(middle, end, 1.01, 0.5)
@@ -70,6 +70,7 @@ def test_friction_holds_a_block_in_two_contacts():
 
 
 @pytest.mark.long
+@pytest.mark.nightly
 def test_a_block_rests_and_slides_at_one_percent_from_the_angle():
     rests = run_to_end(block_on_slope(0.99, end=2.6, step=4e-3, stepping="implicit"))
     assert_rests(rests, 0.99, 0.04)

@@ -26,7 +26,7 @@ IN_STEPS = pytest.mark.parametrize(
     [
         pytest.param(SUBSTEPS, 4e-3, id="substeps"),
         pytest.param(IMPLICIT, 4e-3, id="implicit"),
-        pytest.param(IMPLICIT, 5e-4, id="short implicit steps", marks=pytest.mark.long),
+        pytest.param(IMPLICIT, 5e-4, id="short implicit steps", marks=[pytest.mark.long, pytest.mark.nightly]),
     ],
 )
 IN_BOTH = pytest.mark.parametrize("keys", [SUBSTEPS, IMPLICIT], ids=["substeps", "implicit"])

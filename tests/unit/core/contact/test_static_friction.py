@@ -14,7 +14,8 @@ from rigidfluid.errors import SceneError
 
 
 @pytest.mark.parametrize(
-    ("steepness", "end", "slipped"), [(0.9, 0.8, 0.02), pytest.param(0.99, 2.6, 0.1, marks=pytest.mark.long)]
+    ("steepness", "end", "slipped"),
+    [(0.9, 0.8, 0.02), pytest.param(0.99, 2.6, 0.1, marks=[pytest.mark.long, pytest.mark.nightly])],
 )
 def test_a_block_rests_on_a_slope_that_friction_holds(steepness, end, slipped):
     """It starts with relaxed springs, and slips until the excess of friction over its weight has stopped it."""

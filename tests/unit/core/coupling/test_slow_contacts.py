@@ -67,6 +67,7 @@ def test_nothing_is_planned_where_all_bodies_near_others_are_pressed_slowly(monk
 
 
 @pytest.mark.long
+@pytest.mark.nightly
 def test_disks_that_a_flow_presses_together_lose_little_at_their_contact(tmp_path: Path):
     """In the throat of `stenosis`; with a load that is constant in a step it is 2.2 % of the energy at hand."""
     scene = load_scene(SCENES / "stenosis.toml", ["time.end=0.0057", "output.every=0.0057"])

@@ -30,7 +30,7 @@ def test_a_piston_that_hits_the_bottom_creates_no_energy():
     np.testing.assert_allclose(it.bodies["piston"].position, [0.9, 0.5] + way, atol=1e-12)
 
 
-@pytest.mark.parametrize("model", ["navier-stokes", "stokes"])
+@pytest.mark.parametrize("model", ["navier-stokes", pytest.param("stokes", marks=pytest.mark.nightly)])
 def test_two_bodies_on_one_axis_that_turn_as_one_of_them_lands(model):
     """The axis is neither along the wall nor across it: the pair turns, and slides together against its spring."""
     keys = {"type": "ellipsoid", "semi_axes": [0.15, 0.1], "density": 3.0}
