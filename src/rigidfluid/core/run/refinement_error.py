@@ -28,14 +28,14 @@ def refinement_error(
     and what the next estimate has to know.
 
     The geometry is frozen, the fluid's ∂u/∂t is the latest step's, and errors follow from those of earlier estimates
-    by BDF2, from none at the start; in a flow that was steady then they do not grow. Raises StepRejected and MeshError
+    by BDF2, from none at the start, or from those that a steady flow had then. Raises StepRejected and MeshError
     where nothing can be told.
     """
     mesh, finer = state.mesh, refined_mesh(state.mesh, fluid_domain_at(system, state.pose).placed_on(state.mesh))
     assert state.past is not None, "no step has been taken"
     size = state.past.step
-    before = None if _is_steady(system) else state.flow_error
-    growth = np.zeros(3) if _is_steady(system) else _growth(before, time)
+    before = state.flow_error
+    growth = _growth(before, time, _started_steady(system))
     step = step_in_place(system, state, time, growth[0])
     rate = None if before is None else _known_rate(before, growth, step)
 
@@ -59,12 +59,13 @@ def moving_rows(system: System, bodies: FloatArray, motions: FloatArray) -> Floa
     return np.concatenate([bodies, motions[len(motions) - len(system.motions.names) :]])
 
 
-def _growth(before: FlowError | None, time: float) -> FloatArray:
-    """Weights (3,) of the error at a ``time`` and of those ``before`` it in its derivative, from none at time 0."""
-    if before is None:
-        return derivative_weights(time, None)
-    times = [time, *before.times, 0.0]
-    return derivative_weights(times[0] - times[1], times[1] - times[2])
+def _growth(before: FlowError | None, time: float, steady: bool) -> FloatArray:
+    """Weights (3,) of the error at a ``time`` and of those ``before`` it in its derivative, from none at time 0, or
+    from the first estimate on in a flow that was ``steady`` until then."""
+    times = [time, *(() if before is None else before.times), *(() if steady else (0.0,))]
+    if len(times) == 1:
+        return np.zeros(3)
+    return derivative_weights(times[0] - times[1], times[1] - times[2] if len(times) > 2 else None)
 
 
 def _known_rate(before: FlowError, growth: FloatArray, step: Step) -> ErrorRate:
@@ -105,6 +106,6 @@ def step_in_place(system: System, state: State, time: float, grows: float) -> St
     )
 
 
-def _is_steady(system: System) -> bool:
-    """Tell whether the flow was steady from the start, with its error."""
+def _started_steady(system: System) -> bool:
+    """Tell whether the flow was steady at the start, with its error."""
     return system.fluid is not None and system.fluid.initial == "steady" and bool(system.motions.prescribed.all())

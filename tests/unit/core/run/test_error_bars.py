@@ -43,6 +43,32 @@ def test_the_mesh_estimate_is_the_true_error_of_drag_and_lift(order: int) -> Non
         assert abs(history.error_estimates[f"{name}_steps"][-1]) < 1e-6 * DRAG
 
 
+@pytest.mark.long
+def test_errors_of_a_flow_that_was_steady_grow_once_its_inflow_varies() -> None:
+    """Compared with cells of half the length. Errors of drag go through zero at the end."""
+    inflow = "boundary.0.velocity=['0.3*(1 + 0.5*sin(pi*t))', 0.0]"
+    times = ("time.step=0.1", "time.end=2.0", "output.every=1.0", inflow)
+    coarse, fine = (
+        rigidfluid.run(
+            rigidfluid.load_scene(
+                SCENES / "dfg_cylinder.toml",
+                [
+                    "fluid.initial=steady",
+                    f"output.error_bars={bars}",
+                    f"mesh.size={size}",
+                    f"mesh.size_body={body}",
+                    *times,
+                ],
+            )
+        )
+        for bars, size, body in (("true", 0.05, 0.02), ("false", 0.025, 0.01))
+    )
+    for name in ("fx", "fy"):
+        missing = (fine.bodies[name] - coarse.bodies[name])[[10, 20]]
+        found = coarse.error_estimates[f"{name}_mesh"]
+        assert np.abs(found - missing)[1] < 0.15 * np.abs(missing).max()
+
+
 def test_estimates_lead_from_coarse_cells_and_long_steps_to_finer_and_shorter_ones() -> None:
     """Steps of a quarter and cells of a half leave a fourteenth and at most a quarter of the errors."""
     coarse = rigidfluid.run(falling(mesh={"size": 0.2, "size_body": 0.06}))
