@@ -58,6 +58,7 @@ def test_three_bricks_stay_on_each_other() -> None:
 
 
 @pytest.mark.long
+@pytest.mark.nightly
 def test_a_wall_of_ten_bricks_stands() -> None:
     moved, speed = moved_after(brick_wall(1.7), 0.7, 1.0)
     assert moved < 1e-3
@@ -91,7 +92,7 @@ def test_without_friction_forces_between_dominoes_do_no_work() -> None:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize("friction", [0.0, pytest.param(0.3, marks=pytest.mark.nightly)])
 def test_a_row_of_dominoes_falls_at_the_published_speed(friction: float) -> None:
     """Van Leeuwen's theory; after a dozen dominoes the start is forgotten."""
     times, lean, simulation = fallen(domino_row(16, 4.0, friction=friction))
@@ -148,6 +149,7 @@ def test_a_cube_that_tumbles_on_a_cube_keeps_its_energy(stepping: str, tmp_path:
 
 
 @pytest.mark.long
+@pytest.mark.nightly
 def test_a_turned_cube_rests_on_a_cube(tmp_path: Path) -> None:
     simulation = cube_on_cube(tmp_path, STICKING, [0.53, 0.52, HIGH], [0.0, 0.0, 0.3], end=0.8)
     stepped(simulation, 0.8)

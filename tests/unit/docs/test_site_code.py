@@ -52,6 +52,7 @@ def test_the_tutorial_runs(tmp_path: Path) -> None:
 
 
 @pytest.mark.long
+@pytest.mark.nightly  # and by `make test-plugins`, where nothing is missing
 @pytest.mark.parametrize("page", HOW_TO, ids=lambda page: page.stem)
 def test_how_to_pages_run(page: Path, tmp_path: Path) -> None:
     """What needs a plug-in, PyVista or pandas is left out where they are missing."""

@@ -257,7 +257,7 @@ def test_relative_motion_keeps_the_angular_momentum_and_the_ledger_has_its_work(
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("stepping", ["substeps", "implicit"])
+@pytest.mark.parametrize("stepping", [pytest.param("substeps", marks=pytest.mark.nightly), "implicit"])
 def test_one_that_pushes_itself_off_the_walls_takes_the_energy_from_its_drive(stepping):
     table = pair("stroke", length=0.7, stroke=0.2, position=[0.52, 0.5], angle=0.1)
     law = {"law": "normal", "range": 0.01, "epsilon": 1e-6, "stepping": stepping}
