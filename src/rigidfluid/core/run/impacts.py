@@ -16,7 +16,7 @@ MOST_HALVINGS = 5
 """Number of times at most that an impact, which may last a millionth of a step, halves it."""
 
 TOLERATED_CREATION = 1e-3
-"""Energy that a run may have created, over that put in, before steps follow contacts closely that they resolve."""
+"""Energy that a run and its contacts may have created, over that put in, before steps follow contacts closely."""
 
 MOST_CLOSE_HALVINGS = 8
 """Number of times at most that a step is halved then."""
@@ -43,8 +43,9 @@ def is_unresolved(state: State, path: BodyStep, level: int) -> bool:
 
 
 def _has_created(state: State) -> bool:
-    """Tell whether the run has created more energy than is tolerated."""
-    return -state.ledger.residual > TOLERATED_CREATION * state.ledger.put_in
+    """Tell whether the run has created more energy than is tolerated, and its contacts have."""
+    ledger = state.ledger
+    return -max(ledger.residual, ledger.residual_contacts) > TOLERATED_CREATION * ledger.put_in
 
 
 def level_after_impact(state: State, clock: Clock, level: int) -> int:

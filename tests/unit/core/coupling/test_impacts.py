@@ -60,21 +60,24 @@ def test_an_impact_that_takes_too_much_halves_the_step_a_few_times(state):
 
 
 @pytest.mark.parametrize(
-    ("created", "friction", "left_out", "halvings"),
+    ("created", "in_contacts", "friction", "left_out", "halvings"),
     [
-        (1.01 * TOLERATED_CREATION, 0.0, 1.01 * TOLERATED_FRICTION, MOST_CLOSE_HALVINGS),
-        (0.99 * TOLERATED_CREATION, 0.0, 1.01 * TOLERATED_FRICTION, 0),
-        (1.01 * TOLERATED_CREATION, 0.0, 0.99 * TOLERATED_FRICTION, 0),
-        (1.01 * TOLERATED_CREATION, 0.2 * TOLERATED_FRICTION, 1.01 * TOLERATED_FRICTION, 0),
-        (1.01 * TOLERATED_CREATION, 1.01 * TOLERATED_FRICTION, 2.0 * TOLERATED_FRICTION, MOST_HALVINGS),
+        (1.01, 1.01, 0.0, 1.01, MOST_CLOSE_HALVINGS),
+        (0.99, 1.01, 0.0, 1.01, 0),
+        (1.01, 0.99, 0.0, 1.01, 0),
+        (1.01, 1.01, 0.0, 0.99, 0),
+        (1.01, 1.01, 0.2, 1.01, 0),
+        (1.01, 1.01, 1.01, 2.0, MOST_HALVINGS),
     ],
 )
-def test_contacts_that_turn_velocities_smoothly_halve_steps_once_energy_is_created(
-    state: State, created: float, friction: float, left_out: float, halvings: int
+def test_contacts_that_turn_velocities_smoothly_halve_steps_once_they_have_created_energy(
+    state: State, created: float, in_contacts: float, friction: float, left_out: float, halvings: int
 ) -> None:
-    balanced = state.ledger.kinetic + state.ledger.residual
-    state = replace(state, ledger=replace(state.ledger, kinetic=balanced + created * PUT_IN))
-    turned = path(state, friction * PUT_IN, left_out * PUT_IN)
+    """All in parts of what is tolerated."""
+    tolerated, balanced = TOLERATED_CREATION * PUT_IN, state.ledger.kinetic + state.ledger.residual
+    energies = {"kinetic": balanced + created * tolerated, "residual_contacts": -in_contacts * tolerated}
+    state = replace(state, ledger=replace(state.ledger, **energies))
+    turned = path(state, friction * TOLERATED_FRICTION * PUT_IN, left_out * TOLERATED_FRICTION * PUT_IN)
     found = [is_unresolved(state, turned, level) for level in range(MOST_CLOSE_HALVINGS + 2)]
     assert found == [True] * halvings + [False] * (MOST_CLOSE_HALVINGS + 2 - halvings)
 
