@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from dry_scenes import ball, dry_scene
-from extreme_scenes import dashpot
+from extreme_scenes import dashpot, law
 from flat_bodies import brick_wall, domino_row, gear_pair, rectangle
 from fluid_contacts import RANGE, Stepping, heavy, in_fluid
 
@@ -24,11 +24,11 @@ LAWS: dict[str, dict[str, Any]] = {
 """Laws that repel, with friction."""
 
 
-def hits(law: str, step: float, stepping: Stepping) -> Scene:
+def hits(name: str, step: float, stepping: Stepping) -> Scene:
     """A ball that spins about all axes hits another beside its centre; both then hit the floor."""
     thrown = ball((0.3, 0.35, 0.5), (3.0, -2.0, 0.5), angular_velocity=[5.0, 10.0, 20.0])
     there = ball((0.6, 0.25, 0.5), (0.0, 0.0, 0.0), density=2.0)
-    contact = LAWS[law] | TURNING | {"stepping": stepping}
+    contact = LAWS[name] | TURNING | {"stepping": stepping}
     return dry_scene(contact, thrown, there, end=0.2, step=step, gravity=[0.0, -10.0, 0.0])
 
 
@@ -51,8 +51,13 @@ def gears(step: float, stepping: Stepping) -> Scene:
 def wet_disk(step: float, stepping: Stepping) -> Scene:
     """A disk falls at a slant onto the floor of a box full of fluid."""
     sticking = {"tangential_stiffness": 6e5, "rolling_friction": 0.1}
-    contact = dashpot(1e6, 0.7, RANGE) | sticking | {"stepping": stepping}
-    return in_fluid(contact, heavy(0.3, 0.2, (8.0, -5.0)), end=0.024, step=step, upper=(1.2, 0.8))
+    return _disk_in_fluid(dashpot(1e6, 0.7, RANGE) | sticking, step, stepping)
+
+
+def wet_rolling(step: float, stepping: Stepping) -> Scene:
+    """The same disk by `normal`, which yields as far in the first impact."""
+    rough = {"restitution": 0.7, "friction": 0.5, "rolling_friction": 0.1}
+    return _disk_in_fluid(law("normal", 1e-9, RANGE) | rough, step, stepping)
 
 
 def wet_block(step: float, stepping: Stepping) -> Scene:
@@ -60,6 +65,12 @@ def wet_block(step: float, stepping: Stepping) -> Scene:
     contact = dashpot(1e6, 0.7, RANGE) | {"tangential_stiffness": 6e5, "stepping": stepping}
     block = rectangle(0.24, 0.14, [0.4, 0.22], 0.2) | {"density": 3.0, "velocity": [8.0, -5.0]}
     return in_fluid(contact, block, end=0.024, step=step, upper=(1.2, 0.8))
+
+
+def _disk_in_fluid(contact: dict[str, Any], step: float, stepping: Stepping) -> Scene:
+    """A disk of radius .1 that falls at a slant onto the floor."""
+    disk = heavy(0.3, 0.2, (8.0, -5.0))
+    return in_fluid(contact | {"stepping": stepping}, disk, end=0.024, step=step, upper=(1.2, 0.8))
 
 
 def _stepped(scene: Scene, step: float, stepping: Stepping, **contact: float) -> Scene:

@@ -191,6 +191,12 @@ class CoupledDynamics(OwnMotions):
         resisting = self._weight - self._load, -self._growth
         return self._friction.beyond_simpson(self._modal, self._model.decay, start, resisting)
 
+    @property
+    def drag_left_out(self) -> float:
+        """Energy Δt/6 ΔUᵀ R ΔU of the velocities' change ΔU since the start, none without inertia of the fluid, which
+        has no memory there [energy]."""
+        return self._friction.left_out(self._modal, self._model.decay) if self._weight is None else 0.0
+
     def _blocks(self) -> tuple[FloatArray, FloatArray]:
         """Inverse mass M⁻¹ of each body by itself, (n, d, d) and (n, k, k)."""
         width, d = self._velocity.shape[1], self._own[0].shape[1]
@@ -247,6 +253,10 @@ class _Friction:
             return 0.0
         each = self._square - 2.0 * end * self._moment / self._time + end**2 * self._time / 3.0
         return float(decay @ np.maximum(each, 0.0))
+
+    def left_out(self, end: FloatArray, decay: FloatArray) -> float:
+        """Sum T/6 Σ λ y_end²."""
+        return float(self._time * (decay @ end**2) / 6.0)
 
     def beyond_simpson(
         self, end: FloatArray, decay: FloatArray, start: FloatArray, resisting: tuple[FloatArray, FloatArray]

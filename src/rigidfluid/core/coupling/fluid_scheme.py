@@ -81,7 +81,7 @@ class FluidScheme(ABC):
             sight = system.detection.look_ahead(ExtrapolatedContacts(near, state.pose), dynamics, size)
             at_start = sight.contacts_at(dynamics.pose)
             path = SubstepPath(system, system.law, dynamics, size, state.springs).advance(sight, at_start)
-            path = replace(path, friction=dynamics.friction_loss)
+            path = replace(path, friction=dynamics.friction_loss, drag_left_out=dynamics.drag_left_out)
         return replace(self._with_friction(path), coupling=coupling)
 
     def prepare(self, step: Step, state: State, path: BodyStep) -> Step:

@@ -79,6 +79,10 @@ class JointedDynamics(OwnMotions):
         return self._inner.friction_loss
 
     @property
+    def drag_left_out(self) -> float:
+        return self._inner.drag_left_out
+
+    @property
     def resisted(self) -> bool:
         return self._inner.resisted
 

@@ -64,6 +64,11 @@ class ComponentDynamics:
         return self._motions.friction_loss
 
     @property
+    def drag_left_out(self) -> float:
+        """Energy by which drag on the motions takes less than the flow dissipates [energy]."""
+        return self._motions.drag_left_out
+
+    @property
     def resisted(self) -> bool:
         """Tell whether drag acts on the motions in kicks too."""
         return self._motions.resisted

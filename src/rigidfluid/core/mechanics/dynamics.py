@@ -48,6 +48,7 @@ class DryDynamics(OwnMotions):
     """
 
     friction_loss: float = 0.0
+    drag_left_out: float = 0.0
     resisted: bool = False
 
     def __init__(

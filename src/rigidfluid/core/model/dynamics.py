@@ -68,6 +68,10 @@ class BodyDynamics(Protocol):
         """Energy dissipated by drag within substeps, unresolved by the fluid solves [energy]."""
 
     @property
+    def drag_left_out(self) -> float:
+        """Energy by which the fluid solves take less than their flow dissipates, as velocities turn [energy]."""
+
+    @property
     def resisted(self) -> bool:
         """Tell whether drag acts in kicks too: the work of a force is then its product with the displacement in drifts
         alone."""

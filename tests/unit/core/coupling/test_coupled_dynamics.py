@@ -216,6 +216,15 @@ def test_what_is_linear_in_time_the_solutions_see():
     assert abs(bodies.friction_loss) < 1e-6 * all_friction
 
 
+def test_drag_left_out_is_that_of_the_change_of_velocities():
+    """Δt/6 R ΔU² of one body with R = 32, at the end of the last kick."""
+    total, bodies = 0.5, one_body()
+    drifting = pushed(bodies, np.array([70.0, -20.0, 50.0]), total / 3.0)
+    end = bodies.twist.velocity[0, 0]
+    assert abs(end - drifting[-1]) > 0.1
+    assert bodies.drag_left_out == pytest.approx(total / 6.0 * 32.0 * end**2, rel=1e-9)
+
+
 def test_friction_of_a_jump_beyond_a_linear_velocity():
     """A blow in the middle: U is zero, then decays; against 32 ∫ (U - U_end t/T)² dt."""
     count, total, blow = 2000, 0.5, 6.0

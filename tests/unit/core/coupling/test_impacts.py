@@ -13,7 +13,14 @@ from rigidfluid.core.coupling.stirring import FELT, STORED, impact_tick
 from rigidfluid.core.mechanics.wrenches import nothing
 from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.state import ErrorEstimate, State
-from rigidfluid.core.run.impacts import MOST_HALVINGS, TOLERATED_FRICTION, is_unresolved, level_after_impact
+from rigidfluid.core.run.impacts import (
+    MOST_CLOSE_HALVINGS,
+    MOST_HALVINGS,
+    TOLERATED_CREATION,
+    TOLERATED_FRICTION,
+    is_unresolved,
+    level_after_impact,
+)
 from rigidfluid.core.run.simulation import Simulation
 
 pytestmark = pytest.mark.long
@@ -36,9 +43,9 @@ def state(run: Simulation) -> State:
     return replace(run.state, ledger=ledger)
 
 
-def path(state: State, friction: float) -> BodyStep:
+def path(state: State, friction: float, drag_left_out: float = 0.0) -> BodyStep:
     none = nothing(state.pose)
-    return BodyStep(state.pose, state.twist, state.motions, none, 0.0, 0.0, 1, state.link, friction)
+    return BodyStep(state.pose, state.twist, state.motions, none, 0.0, 0.0, 1, state.link, friction, drag_left_out)
 
 
 def test_what_comes_in_counts_as_put_in_and_what_goes_out_does_not(state):
@@ -50,6 +57,29 @@ def test_an_impact_that_takes_too_much_halves_the_step_a_few_times(state):
     halved = [is_unresolved(state, too_much, level) for level in range(MOST_HALVINGS + 1)]
     assert halved == [True] * MOST_HALVINGS + [False]
     assert not is_unresolved(state, enough, 0)
+
+
+@pytest.mark.parametrize(
+    ("created", "in_contacts", "friction", "left_out", "halvings"),
+    [
+        (1.01, 1.01, 0.0, 1.01, MOST_CLOSE_HALVINGS),
+        (0.99, 1.01, 0.0, 1.01, 0),
+        (1.01, 0.99, 0.0, 1.01, 0),
+        (1.01, 1.01, 0.0, 0.99, 0),
+        (1.01, 1.01, 0.2, 1.01, 0),
+        (1.01, 1.01, 1.01, 2.0, MOST_HALVINGS),
+    ],
+)
+def test_contacts_that_turn_velocities_smoothly_halve_steps_once_they_have_created_energy(
+    state: State, created: float, in_contacts: float, friction: float, left_out: float, halvings: int
+) -> None:
+    """All in parts of what is tolerated."""
+    tolerated, balanced = TOLERATED_CREATION * PUT_IN, state.ledger.kinetic + state.ledger.residual
+    energies = {"kinetic": balanced + created * tolerated, "residual_contacts": -in_contacts * tolerated}
+    state = replace(state, ledger=replace(state.ledger, **energies))
+    turned = path(state, friction * TOLERATED_FRICTION * PUT_IN, left_out * TOLERATED_FRICTION * PUT_IN)
+    found = [is_unresolved(state, turned, level) for level in range(MOST_CLOSE_HALVINGS + 2)]
+    assert found == [True] * halvings + [False] * (MOST_CLOSE_HALVINGS + 2 - halvings)
 
 
 def test_halvings_count_from_the_level_that_a_tolerance_asked_for(state):

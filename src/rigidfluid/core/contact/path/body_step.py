@@ -26,7 +26,8 @@ class BodyStep:
 
     In a fluid ``friction`` is the energy that drag takes in substeps, unresolved by the fluid solves, and ``coupling``
     the one with which the bodies were followed, None where nothing can touch. Without inertia of the fluid that energy
-    is known for certain: it is ``drag_loss`` then, and ``friction`` zero.
+    is known for certain: it is ``drag_loss`` then, and ``friction`` zero. ``drag_left_out``: by how much the fluid
+    solves take less than their flow dissipates, as velocities turn [energy].
 
     ``springs``: those along the surfaces of contacts at the end, None where there are none.
     """
@@ -40,6 +41,7 @@ class BodyStep:
     substeps: int
     link: LinkLoad
     friction: float = 0.0
+    drag_left_out: float = 0.0
     coupling: Coupling | None = None
     drag_loss: float = 0.0
     springs: TangentialSprings | None = None

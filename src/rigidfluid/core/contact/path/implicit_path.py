@@ -86,7 +86,8 @@ def implicit_coupled(
         impulse = add_wrench(impulse, path.impulse, 1.0)
         lost, actuator_work, springs = lost + path.dissipated, actuator_work + path.actuator_work, path.springs
     path = arrived(dynamics, impulse, lost, actuator_work, IMPLICIT_PARTS)
-    return replace(path, friction=dynamics.friction_loss, springs=springs)
+    path = replace(path, friction=dynamics.friction_loss, drag_left_out=dynamics.drag_left_out)
+    return replace(path, springs=springs)
 
 
 def _implicit_step(
