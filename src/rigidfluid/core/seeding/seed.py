@@ -81,7 +81,7 @@ def seed(table: SwarmTable, at: str, draws: Draws, occupied: Occupied, grow: boo
 
 
 def _surroundings(swarm: Swarm, region: Region, occupied: Occupied) -> Surroundings:
-    """What is around a swarm: images of bodies where all are shorter than the periods, and periodic surfaces else."""
+    """The surroundings of a swarm: images where all bodies are shorter than the periods, else periodic surfaces."""
     domain, lattice = occupied.domain, occupied.lattice
     longest = max(body.bounding_radius for body in (*swarm.bodies, *occupied.others.bodies))
     if 2.0 * longest + swarm.gap >= lattice.shortest:

@@ -39,7 +39,7 @@ def crossable_lattice(domain: Domain) -> Lattice:
     the same in each image, or periodic ones at other angles than right ones."""
     lattice = domain.cells
     along = all(_is_along(domain.pieces[number], lattice) for number in _others(domain))
-    return lattice if along and _at_right_angles(lattice) else domain.alone
+    return lattice if along and _has_right_angles(lattice) else domain.alone
 
 
 def check_crossed(model: Model, at: str) -> None:
@@ -47,7 +47,7 @@ def check_crossed(model: Model, at: str) -> None:
     to each other, walls that are not the same in each image of the domain, and forces between two bodies at any
     distance."""
     lattice = model.domain.cells
-    if not _at_right_angles(lattice):
+    if not _has_right_angles(lattice):
         found = "bodies that cross periodic surfaces at other angles than right ones"
         raise SceneError(at, found, "pairs of surfaces at right angles to each other", "Make others walls.")
     for number in _others(model.domain):
@@ -73,7 +73,7 @@ def _others(domain: Domain) -> list[int]:
     return sorted(set(range(len(domain.pieces))) - {number for pair in domain.periodic for number in pair})
 
 
-def _at_right_angles(lattice: Lattice) -> bool:
+def _has_right_angles(lattice: Lattice) -> bool:
     units = lattice.vectors / lattice.lengths[:, None]
     return bool(np.all(np.abs(units @ units.T - np.eye(len(units))) <= _ALONG))
 

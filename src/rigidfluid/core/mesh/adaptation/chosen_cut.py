@@ -80,10 +80,10 @@ def cut_around(mesh: Mesh, fluid_domain: FluidDomain, winding: IntArray, reach: 
     wishes, together = _wishes(mesh, fluid_domain, seams, reach)
     mesh, wishes = _bisected(mesh, wishes, _between(mesh, wishes))
     for _ in range(rounds):
-        _, at_odds = find_cut(*_wanted(mesh, wishes, seams))
-        if not len(at_odds):
+        _, conflicts = find_cut(*_wanted(mesh, wishes, seams))
+        if not len(conflicts):
             break
-        mesh, wishes = _bisected(mesh, wishes, _at_bodies(mesh, wishes, seams, at_odds))
+        mesh, wishes = _bisected(mesh, wishes, _edges_at_bodies(mesh, wishes, seams, conflicts))
     made = recut(mesh, seams, smooth_cut(*_wanted(mesh, wishes, seams)))
     return replace(made, periods=Periods(seams.ways, winding + fluid_domain.periods_outside() - together))
 
@@ -121,7 +121,7 @@ def _between(mesh: Mesh, wishes: _Wishes) -> IntArray:
     return np.asarray(edges[wishes.on_body[one] & wishes.on_body[other] & differ])
 
 
-def _at_bodies(mesh: Mesh, wishes: _Wishes, seams: Seams, cells: IntArray) -> IntArray:
+def _edges_at_bodies(mesh: Mesh, wishes: _Wishes, seams: Seams, cells: IntArray) -> IntArray:
     """Edges (E, 2) between the vertices of ``cells`` (C,) on bodies, or images of them, and others that are on none."""
     root, _ = seams.originals(mesh)
     chosen = np.zeros(len(mesh.points), dtype=bool)

@@ -22,8 +22,8 @@ def smooth_cut(shift: IntArray, pairs: Neighbours, held: BoolArray) -> IntArray:
     One direction comes after the other. Cells between which one seam already runs have one shift in the next direction.
     Raises MeshError where the cells that are held want different ones.
     """
-    found, at_odds = find_cut(shift, pairs, held)
-    if len(at_odds):
+    found, conflicts = find_cut(shift, pairs, held)
+    if len(conflicts):
         raise MeshError("mesh", "bodies too near for a seam between them", "a cell between bodies", REMEDY)
     return found
 
@@ -34,9 +34,9 @@ def find_cut(shift: IntArray, pairs: Neighbours, held: BoolArray) -> tuple[IntAr
     apart = np.zeros(len(pairs.cells), dtype=bool)
     for axis in range(shift.shape[1]):
         groups = _Groups(pairs, apart, axis, len(shift))
-        at_odds = groups.at_odds(shift[:, axis], held)
-        if len(at_odds):
-            return found, at_odds
+        conflicts = groups.conflicts(shift[:, axis], held)
+        if len(conflicts):
+            return found, conflicts
         found[:, axis] = groups.smoothed(shift[:, axis], held)
         one, other = found[pairs.cells.T, axis]
         apart |= pairs.apart[:, axis] + one != other
@@ -75,7 +75,7 @@ class _Groups:
             raise MeshError("mesh", "a seam that meets itself", "seams that cross each other once", REMEDY)
         return place
 
-    def at_odds(self, shift: IntArray, held: BoolArray) -> IntArray:
+    def conflicts(self, shift: IntArray, held: BoolArray) -> IntArray:
         """Cells (C,) that are ``held`` (M,) in groups of which these want different shifts."""
         cells = np.flatnonzero(held)
         group, base = self._group[cells], (shift - self._place)[cells]
