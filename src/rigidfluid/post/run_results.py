@@ -15,7 +15,7 @@ from rigidfluid.core.case.scene_model import Case
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.output.fluid_fields import FluidFields
 from rigidfluid.core.output.history import History, reading
-from rigidfluid.core.output.records import columns
+from rigidfluid.core.output.records import columns, wrapped_columns
 from rigidfluid.core.output.run_document import read_document
 from rigidfluid.core.output.tables import read_columns, read_header, table_path
 from rigidfluid.core.output.vtu import read_pvd, read_vtu
@@ -40,7 +40,7 @@ class RunResults(History):
     def __init__(self, folder: Path) -> None:
         summary, self._document = read_document(folder)
         dimension = self._document["scene"]["dimension"]
-        super().__init__(dimension, folder=folder, coordinates=_coordinates(folder, dimension))
+        super().__init__(dimension, folder=folder, columns_by_table=_columns(folder, dimension))
         self.summary = summary
         self.folder: Path = folder
 
@@ -130,11 +130,18 @@ def load_results(folder: str | Path) -> RunResults:
     return RunResults(path_of("folder", folder, "a path", "Give the folder of a run."))
 
 
-def _coordinates(folder: Path, dimension: int) -> list[str]:
-    """Columns of the coordinates of joints, also of those that a plug-in names."""
-    path = table_path(folder, "joints")
-    known = columns(dimension, ())["joints"]
+def _columns(folder: Path, dimension: int) -> dict[str, tuple[str, ...]]:
+    """Columns of each table: with coordinates of joints, also those that a plug-in names, and wrapped positions if the
+    run has written them."""
+    known, wrapped = columns(dimension, ())["joints"], set(wrapped_columns(dimension))
+    coordinates = [name for name in _header(folder, "joints") if name not in known]
+    return columns(dimension, coordinates, periodic=wrapped <= set(_header(folder, "bodies")))
+
+
+def _header(folder: Path, name: str) -> list[str]:
+    """Columns of a table on disk, none if there is none."""
+    path = table_path(folder, name)
     if not path.exists():
         return []
     with reading(path):
-        return [name for name in read_header(path) if name not in known]
+        return read_header(path)

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 from rigidfluid.core.case.auto_size import auto_size, auto_size_body
 from rigidfluid.core.case.boundary_table_checks import check_surface_names
 from rigidfluid.core.case.joint_kinds import read_drives
+from rigidfluid.core.case.laws import scene_pair_forces
 from rigidfluid.core.case.mechanisms import placed_mechanisms
 from rigidfluid.core.case.part_tables import check_part_tables
 from rigidfluid.core.case.remaining import remaining_tables
-from rigidfluid.core.case.scene_model import model_of, scene_body, scene_domain
+from rigidfluid.core.case.scene_model import model_of, names_used, scene_body, scene_domain, with_pairs
 from rigidfluid.core.case.time_factor import read_time_tables
 from rigidfluid.core.geometry.value_types import describe
 from rigidfluid.core.model.memory import told_memory
@@ -25,6 +26,7 @@ from rigidfluid.core.scene.places import told_in_file
 from rigidfluid.core.scene.scene import Scene
 from rigidfluid.core.scene.toml_file import read_toml
 from rigidfluid.core.scene.validation import read_table
+from rigidfluid.core.setup.image_checks import crossable_lattice
 from rigidfluid.core.setup.made_bodies import check_made_bodies, told_by_numbers
 from rigidfluid.core.setup.placed_bodies import PlacedBodies
 from rigidfluid.errors import ArgumentError, SceneError
@@ -99,9 +101,12 @@ def _occupied(scene: Scene, registry: Registry) -> Occupied:
         domain = ask(scene_domain, scene.domain, registry, scene.dimension)
         mechanisms = ask(placed_mechanisms, scene.mechanism, registry, scene.dimension)
         bodies = [ask(scene_body, table, f"body.{n}", registry, scene.dimension) for n, table in enumerate(scene.body)]
+        forces = ask(scene_pair_forces, scene.contact, scene.interaction, registry)
+    domain = with_pairs(domain.called(names_used(scene)), scene)
     placed = PlacedBodies(domain, tuple(bodies), mechanisms, registry).all_bodies
     shapes = tuple(body.shape for body in placed)
-    return Occupied(domain, Others(shapes, initial_pose(placed, scene.dimension)), registry)
+    lattice = domain.alone if forces else crossable_lattice(domain)
+    return Occupied(domain, Others(shapes, initial_pose(placed, scene.dimension)), lattice, registry)
 
 
 def _sized(data: Mapping[str, Any]) -> Scene:

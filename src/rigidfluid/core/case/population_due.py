@@ -88,7 +88,8 @@ def _named(found: Seeded, source: SourceTable, count: int) -> Mapping[str, Any]:
 
 
 def _seeded(model: Model, number: int, count: int, others: Others) -> Seeded:
-    draws, occupied = Draws(model.seed, _SOURCES + number, count), Occupied(model.domain, others, model.registry)
+    draws = Draws(model.seed, _SOURCES + number, count)
+    occupied = Occupied(model.domain, others, model.domain.alone, model.registry)
     return seed(model.source_tables[number].swarm(count), f"source.{number}", draws, occupied, grow=False)
 
 

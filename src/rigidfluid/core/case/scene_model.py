@@ -89,8 +89,8 @@ def _model(scene: Scene, registry: Registry) -> Model:
         ask(check_numbered_names, scene.interaction, *names)
         domain = ask(scene_domain, scene.domain, registry, scene.dimension)
         if domain is not None:
-            domain = domain.called(_names_used(scene))
-            domain = ask(_with_pairs, domain, scene) or domain
+            domain = domain.called(names_used(scene))
+            domain = ask(with_pairs, domain, scene) or domain
         mechanisms = ask(placed_mechanisms, scene.mechanism, registry, scene.dimension)
         bodies = tuple(
             ask(scene_body, table, f"body.{n}", registry, scene.dimension) for n, table in enumerate(scene.body)
@@ -168,7 +168,7 @@ def _with_scalar(fluid: Fluid | NoFluid, table: ScalarTable, domain: Domain, bod
     return replace(fluid, scalar=scene_scalar(table, domain, names))
 
 
-def _names_used(scene: Scene) -> set[str]:
+def names_used(scene: Scene) -> set[str]:
     """Names of surfaces in the scene's tables."""
     return {table.on for table in scene.boundary} | {name for table in scene.interaction for name in table.names or ()}
 
@@ -179,7 +179,7 @@ def scene_domain(table: DomainTable, registry: Registry, dimension: int) -> Doma
     return part(read_options(part, table.options, type(table).model_fields, "domain"), dimension)
 
 
-def _with_pairs(domain: Domain, scene: Scene) -> Domain:
+def with_pairs(domain: Domain, scene: Scene) -> Domain:
     """The domain with the scene's pairs of periodic surfaces; raises SceneError for what is wrong with its tables."""
     check_boundary_tables(scene.boundary, domain, scene.time.end)
     return domain.with_periodic(periodic_pairs(scene.boundary, domain))

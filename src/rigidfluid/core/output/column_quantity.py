@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rigidfluid.core.output.records import LEDGER_COLUMNS, quantity_columns
+from rigidfluid.core.output.records import LEDGER_COLUMNS, quantity_columns, wrapped_columns
 
 _IN_BODIES = {
     "position": "length",
@@ -24,6 +24,8 @@ def column_quantity(column: str, dimension: int) -> str:
     if column in LEDGER_COLUMNS:
         return "energy"
     columns = quantity_columns(dimension)
+    if column in wrapped_columns(dimension):
+        return "length"
     return next((_IN_BODIES[name] for name in columns if column in columns[name]), _ALONE.get(column, ""))
 
 

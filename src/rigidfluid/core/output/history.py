@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidfluid.core.model.joints import COORDINATES
 from rigidfluid.core.output.optional_package import optional_package
 from rigidfluid.core.output.records import Records, Row, columns
 from rigidfluid.core.output.tables import read_columns, read_header, read_rows, table_path
@@ -32,11 +31,14 @@ class History(Described):
         Rows to begin with, by table.
     folder : Path, optional
         Folder of the tables on disk.
-    coordinates : iterable of str
-        Coordinates of joints, which have columns of their own.
+    columns_by_table : dict of str to tuple of str, optional
+        Names of the columns of each table; if not given those of a scene without periodic surfaces and joints of
+        plug-ins.
 
     Attributes
     ----------
+    columns : dict of str to tuple of str
+        Names of the columns of each table.
     summary : dict
         The content of summary.json; empty before the run has ended.
     folder : Path or None
@@ -48,17 +50,13 @@ class History(Described):
         dimension: int,
         records: Records | None = None,
         folder: Path | None = None,
-        coordinates: Iterable[str] = COORDINATES,
+        columns_by_table: Mapping[str, tuple[str, ...]] | None = None,
     ) -> None:
-        self.dimension, self._coordinates = dimension, tuple(coordinates)
+        self.dimension = dimension
+        self.columns = dict(columns_by_table or columns(dimension))
         self.summary: dict[str, Any] = {}
         self._rows: Records = records or {}
         self.folder = folder
-
-    @property
-    def columns(self) -> dict[str, tuple[str, ...]]:
-        """Names of the columns of each table."""
-        return columns(self.dimension, self._coordinates)
 
     @property
     def records(self) -> Records:

@@ -45,7 +45,8 @@ def point_sets(system: System, state: State, forces: FloatArray) -> dict[str, Po
 def _body_points(system: System, state: State) -> PointSet:
     """A point for each body at its centre of mass; ``id`` is its number, from 0.
 
-    In the plane ``angle``, ``angular_velocity``, ``torque`` and ``contact_torque`` have one component each.
+    In the plane ``angle``, ``angular_velocity``, ``torque`` and ``contact_torque`` have one component each. With
+    periodic surfaces there is the ``wrapped_position`` too.
     """
     pose, twist, fluid, contact = state.pose, state.twist, state.hydrodynamic_wrench, state.contact_wrench
     numbers = np.arange(len(system.bodies))
@@ -60,6 +61,8 @@ def _body_points(system: System, state: State) -> PointSet:
         "contact_force": contact.force,
         "contact_torque": contact.torque,
     }
+    if system.domain.periodic:
+        arrays["wrapped_position"] = system.domain.wrapped(pose.position)
     return PointSet(pose.position, {name: _flat(values) for name, values in arrays.items()}, _VERTEX, numbers[:, None])
 
 

@@ -33,14 +33,18 @@ ESTIMATED, CAUSES = ("velocity", "angular_velocity", "force", "torque"), ("mesh"
 SCALAR_COLUMNS = ("content", "rate", "source", "imbalance", "least", "greatest", "remeshing")
 
 
-def columns(dimension: int, coordinates: Iterable[str] = COORDINATES) -> dict[str, tuple[str, ...]]:
-    """Column names of each table, in order; ``coordinates`` are those of joints, by name."""
+def columns(
+    dimension: int, coordinates: Iterable[str] = COORDINATES, *, periodic: bool = False
+) -> dict[str, tuple[str, ...]]:
+    """Column names of each table, in order; ``coordinates`` are those of joints, by name; ``periodic`` of scenes with
+    periodic surfaces."""
     quantities = quantity_columns(dimension)
     position, velocity, force = quantities["position"], quantities["velocity"], quantities["force"]
     a, b, normal = (_components(name, dimension) for name in "abn")
+    wrapped = wrapped_columns(dimension) if periodic else ()
     stresslet = tuple(f"s{'xyz'[row]}{'xyz'[column]}" for row, column in zip(*np.triu_indices(dimension), strict=True))
     return {
-        "bodies": ("time", "step", "body", *chain(*quantities.values()), "gap"),
+        "bodies": ("time", "step", "body", *chain(*quantities.values()), "gap", *wrapped),
         "contacts": ("time", "step", "a", "b", *a, *b, *normal, "gap", *force),
         "joints": ("time", "step", "joint", "gap", *coordinates, "rate", *force, *quantities["torque"]),
         "energy": ("time", "step", *LEDGER_COLUMNS),
@@ -70,6 +74,11 @@ def quantity_columns(dimension: int) -> dict[str, tuple[str, ...]]:
         "contact_force": _components("cf", dimension),
         "contact_torque": ("ct",) if two else _components("ct", dimension),
     }
+
+
+def wrapped_columns(dimension: int) -> tuple[str, ...]:
+    """Columns of positions wrapped into the domain, which scenes with periodic surfaces have."""
+    return tuple(f"{axis}_wrapped" for axis in "xyz"[:dimension])
 
 
 def _derivative_columns(dimension: int) -> Iterator[str]:
@@ -124,6 +133,11 @@ def records(
     }
 
 
+def columns_of(system: System) -> dict[str, tuple[str, ...]]:
+    """The `columns` of a system's tables."""
+    return columns(system.dimension, joint_coordinates(system), periodic=bool(system.domain.periodic))
+
+
 def joint_coordinates(system: System) -> Mapping[str, str]:
     """Units of the coordinates of a system's joints, by the names of their columns, in order."""
     return system.joints.coordinates
@@ -136,20 +150,23 @@ def moving(system: System) -> tuple[str, ...]:
 
 def _body_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:
     """A row for each body, and one for each mechanism, with the least gap of its components."""
-    numbers = _numbers(state.pose, state.twist, state.hydrodynamic_wrench, state.contact_wrench, state.gaps)
+    numbers = _numbers(system, state.pose, state.twist, state.hydrodynamic_wrench, state.contact_wrench, state.gaps)
     if system.motions.names:
         motions, gaps = state.motions, system.motions.least(state.gaps)
-        wholes = _numbers(motions.pose, motions.twist, motions.hydrodynamic, motions.contact, gaps)
+        wholes = _numbers(system, motions.pose, motions.twist, motions.hydrodynamic, motions.contact, gaps)
         numbers += wholes[len(wholes) - len(system.motions.names) :]
     for name, row in zip(moving(system), numbers, strict=True):
         yield (*stamp, name, *row)
 
 
-def _numbers(pose: Pose, twist: Twist, hydrodynamic: Wrench, contact: Wrench, gaps: FloatArray) -> list[list[float]]:
+def _numbers(
+    system: System, pose: Pose, twist: Twist, hydrodynamic: Wrench, contact: Wrench, gaps: FloatArray
+) -> list[list[float]]:
     fields = [
         *(pose.position, pose.orientation, twist.velocity, twist.angular_velocity),
         *(hydrodynamic.force, hydrodynamic.torque, contact.force, contact.torque),
         gaps[:, None],
+        *([system.domain.wrapped(pose.position)] if system.domain.periodic else []),
     ]
     rows: list[list[float]] = np.concatenate(fields, axis=1).tolist()
     return rows

@@ -6,7 +6,7 @@ Ranks that share a run write each its part of the fields and its checkpoint, and
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
@@ -15,7 +15,6 @@ from typing import Any, TextIO
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import IntArray
-from rigidfluid.core.model.joints import COORDINATES
 from rigidfluid.core.model.ranks import ALONE, ROOT, Ranks
 from rigidfluid.core.model.types import Fields
 from rigidfluid.core.output.checkpoint import (
@@ -35,7 +34,7 @@ from rigidfluid.core.output.output_files import (
     written_sizes,
 )
 from rigidfluid.core.output.point_sets import PointSet
-from rigidfluid.core.output.records import Records, columns
+from rigidfluid.core.output.records import Records
 from rigidfluid.core.output.results_folder import clear, take_folder
 from rigidfluid.core.output.run_files import RUN
 from rigidfluid.core.output.tables import Prefix, Table, table_path
@@ -46,7 +45,8 @@ CHECKPOINT, SUMMARY, SERIES = "state.h5", "summary.json", "fields.pvd"
 
 
 class Writer:
-    """Writes the files of one run to the folder ``out``; every method is called by all ranks together.
+    """Writes the files of one run to the folder ``out``, tables of these columns; every method is called by all
+    ranks together.
 
     All files are started again, unless an earlier run is ``resumed`` from its checkpoint. Every method raises
     OutputError, on all ranks, if the disk refuses on one; so does the start if another run is writing there, or files
@@ -56,10 +56,9 @@ class Writer:
     def __init__(
         self,
         out: Path,
-        dimension: int,
+        columns_by_table: Mapping[str, Sequence[str]],
         resumed: Checkpoint | None,
         ranks: Ranks,
-        coordinates: Iterable[str] = COORDINATES,
     ) -> None:
         self.out, self.closed, self._ranks = out, False, ranks
         self._tables: dict[str, Table] = {}
@@ -68,7 +67,7 @@ class Writer:
         self.sizes: IntArray = np.zeros((0, len(DATASETS)), dtype=np.int64) if resumed is None else resumed.sizes
         with ExitStack() as undo:
             undo.callback(self.close)
-            self._start(columns(dimension, coordinates), resumed)
+            self._start(columns_by_table, resumed)
             undo.pop_all()
 
     def _start(self, columns_by_table: Mapping[str, Sequence[str]], resumed: Checkpoint | None) -> None:

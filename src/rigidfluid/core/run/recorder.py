@@ -15,7 +15,7 @@ from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.point_sets import point_sets
-from rigidfluid.core.output.records import Records, StepCost, count_cells, joint_coordinates, records
+from rigidfluid.core.output.records import Records, StepCost, count_cells, records
 from rigidfluid.core.output.writer import Writer
 from rigidfluid.core.run.companions import Companions
 from rigidfluid.errors import OutputError
@@ -48,9 +48,7 @@ class Recorder:
         """Write to a folder from now on, after what an ``earlier`` run has left there."""
         if earlier is not None:
             self._times, self.extremes = earlier.times, earlier.extremes
-        coordinates = joint_coordinates(simulation.system)
-        ranks = simulation.system.backend.ranks
-        self._writer = Writer(out, simulation.model.dimension, earlier, ranks, coordinates)
+        self._writer = Writer(out, self.history.columns, earlier, simulation.system.backend.ranks)
 
     def record(self, simulation: Simulation) -> None:
         """Add the rows of the present state."""

@@ -27,7 +27,7 @@ from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.fluid_fields import FluidFields
 from rigidfluid.core.output.history import History
-from rigidfluid.core.output.records import count_cells, joint_coordinates
+from rigidfluid.core.output.records import columns_of, count_cells
 from rigidfluid.core.output.writer import has_checkpoint
 from rigidfluid.core.run.body_now import BodyNow, bodies_now
 from rigidfluid.core.run.caller_input import (
@@ -108,7 +108,7 @@ class Simulation(Described):
         self.watch = Stopwatch()
         self.mesh_updater = updater_of(model.fluid, system, self.clock, self.watch)
         self.stepper = Stepper(system, self.clock, self.mesh_updater, self.watch, model.time.tolerance)
-        history = History(model.dimension, folder=out, coordinates=joint_coordinates(system))
+        history = History(model.dimension, folder=out, columns_by_table=columns_of(system))
         probes = np.array(model.output.probes, dtype=float).reshape(-1, model.dimension)
         self.recorder = Recorder(history, Extremes.none(len(system.bodies)), files, probes)
         self._timer = RunTimer()

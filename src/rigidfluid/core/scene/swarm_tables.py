@@ -138,7 +138,8 @@ class RandomBodies(Table):
         "radius if not given [length]",
     )
     region: RegionTable | None = Field(
-        default=None, description="Region that holds all of each body; the whole domain if not given"
+        default=None,
+        description="Region that holds all of each body; the whole domain if not given, across periodic surfaces too",
     )
     velocity: InitialVelocity = None
     velocity_deviation: NotNegative = Field(

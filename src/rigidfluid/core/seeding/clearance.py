@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from rigidfluid.core.contact.pairs.image_detection import ImageDetection
 from rigidfluid.core.contact.path.detector_choice import exact_detector
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.lattice import Lattice
 from rigidfluid.core.geometry.piece import Piece
 from rigidfluid.core.geometry.surface import Surface
 from rigidfluid.core.geometry.wall import Wall
 from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.detector import Detector
-from rigidfluid.core.model.types import Pose
+from rigidfluid.core.model.types import Contacts, Pose
 from rigidfluid.registry import Registry
 
 _DEAR = 1e4
@@ -37,11 +40,12 @@ class Gaps(NamedTuple):
 
 @dataclass(frozen=True)
 class Surroundings:
-    """Surfaces around a swarm: the ``pieces`` of the domain's boundary, and the ``surfaces`` of its region; the parts
-    that are installed."""
+    """Surfaces around a swarm: the ``pieces`` of the domain's boundary, and the ``surfaces`` of its region; the
+    ``lattice`` of bodies' images, without vectors where there are none; the parts that are installed."""
 
     pieces: tuple[Piece, ...]
     surfaces: tuple[Surface, ...]
+    lattice: Lattice
     registry: Registry
 
     @property
@@ -65,22 +69,28 @@ class Surroundings:
 
 
 class Clearance:
-    """Gaps of ``bodies``, of which the first ``moving`` ones are looked at, to each other and to what is around."""
+    """Gaps of ``bodies``, of which the first ``moving`` ones are looked at, to each other, to images of others and to
+    what is around."""
 
     def __init__(self, bodies: Sequence[Body], moving: int, around: Surroundings) -> None:
         detector, walls, self._curved = around.parted(bodies)
         count = len(bodies)
         placed = [Wall(count + number, str(number), shape) for number, shape in enumerate(walls)]
-        self._detector = detector(detector.Options(), bodies, placed)
+        make = partial(detector, detector.Options())
+        if len(around.lattice.vectors):
+            self._detect = ImageDetection(make, bodies, placed, around.lattice).detect
+        else:
+            self._detect = partial(_detected, make(bodies, placed))
         self._count, self._moving = count, moving
         self._bounds = np.array([body.bounding_radius for body in bodies[:moving]])
 
     def within(self, pose: Pose, reach: float) -> Gaps:
         """All gaps up to ``reach`` [length] at a ``pose`` of all bodies."""
-        found = self._detector.detect(pose, None, reach)
+        found = self._detect(pose, reach)
         found = select(found, found.body_a < self._moving)
         other = np.where(found.body_b < self._count, found.body_b, -1)
-        told = Gaps(found.body_a, other, found.point_a, found.point_b, found.normal, found.gap)
+        on_b = found.point_b if found.shift is None else found.point_b - found.shift
+        told = Gaps(found.body_a, other, found.point_a, on_b, found.normal, found.gap)
         of_balls = [self._ball_gaps(surface, pose.position[: self._moving], reach) for surface in self._curved]
         return _joined([told, *of_balls])
 
@@ -91,6 +101,11 @@ class Clearance:
         normal = surface.normal(position[near])
         point_a = position[near] - self._bounds[near, None] * normal
         return Gaps(near, np.full(len(near), -1), point_a, point_a - gap[near, None] * normal, normal, gap[near])
+
+
+def _detected(detector: Detector, pose: Pose, reach: float) -> Contacts:
+    """Contacts without images."""
+    return detector.detect(pose, None, reach)
 
 
 def _joined(parts: Sequence[Gaps]) -> Gaps:

@@ -6,6 +6,7 @@ import numpy as np
 import scipy
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.geometry.lattice import Lattice
 from rigidfluid.core.seeding.clearance import Surroundings
 from rigidfluid.core.seeding.draws import Draws
 from rigidfluid.core.seeding.regions import Region
@@ -18,7 +19,7 @@ _RECENT = 64
 
 
 class Insertion:
-    """Places in a ``region`` that are clear of the surfaces ``around``, one as likely as another.
+    """Places in a ``region`` that are clear of the surfaces ``around`` and of images, one as likely as another.
 
     Notes
     -----
@@ -27,6 +28,7 @@ class Insertion:
 
     def __init__(self, region: Region, around: Surroundings, draws: Draws) -> None:
         self._region, self._surfaces, self._draws = region, around.all, draws
+        self._lattice = around.lattice
 
     def places(self, radii: FloatArray, gap: float, others: FloatArray, bounds: FloatArray) -> FloatArray | None:
         """Centres (n, d) of balls of ``radii`` (n,) with at least ``gap`` to each other, to surfaces, and to balls of
@@ -34,7 +36,7 @@ class Insertion:
 
         The largest ball comes first.
         """
-        placed, found = _Balls(others, bounds), np.zeros((len(radii), others.shape[1]))
+        placed, found = _Balls(others, bounds, self._lattice), np.zeros((len(radii), others.shape[1]))
         for body in np.argsort(-radii, kind="stable").tolist():
             place = self._place(float(radii[body]) + gap, placed)
             if place is None:
@@ -63,10 +65,11 @@ class Insertion:
 
 
 class _Balls:
-    """Balls around ``centres`` (m, d) with ``radii`` (m,) [length], to which others are added."""
+    """Balls around ``centres`` (m, d) with ``radii`` (m,) [length] and their images by a ``lattice``, to which others
+    are added."""
 
-    def __init__(self, centres: FloatArray, radii: FloatArray) -> None:
-        self._centres, self._radii = list(centres), radii.tolist()
+    def __init__(self, centres: FloatArray, radii: FloatArray, lattice: Lattice) -> None:
+        self._centres, self._radii, self._lattice = list(centres), radii.tolist(), lattice
         self._plant()
 
     def add(self, centre: FloatArray, radius: float) -> None:
@@ -83,7 +86,7 @@ class _Balls:
             points = points[nearest >= self._least + room]  # of balls of one size there are no others
         centres, radii = np.reshape(self._centres, (-1, points.shape[1])), np.array(self._radii)
         for point in points:
-            if np.all(np.linalg.norm(centres - point, axis=1) >= radii + room):
+            if np.all(np.linalg.norm(self._lattice.shortened(centres - point), axis=1) >= radii + room):
                 return np.asarray(point)
         return None
 

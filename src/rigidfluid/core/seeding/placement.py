@@ -148,10 +148,14 @@ def nearest(
     bodies: tuple[Body, ...], pose: Pose, others: Others, around: Surroundings, start: float
 ) -> tuple[float, int]:
     """Smallest gap of bodies to each other, to others and to the surfaces around, looked for from ``start`` on
-    [length]; and the number of the body that has it."""
+    [length], at most that of bounding balls to their own images; and the number of the body that has it."""
     whole = Others(bodies, pose).joined(others.bodies, others.pose)
-    clearance, reach = Clearance(whole.bodies, len(bodies), around), start
+    bounds = np.array([body.bounding_radius for body in bodies])
+    clearance, own = Clearance(whole.bodies, len(bodies), around), around.lattice.shortest - 2.0 * float(bounds.max())
+    reach = min(start, own)
     while not len((gaps := clearance.within(whole.pose, reach)).gap):
-        reach *= 4.0
+        if reach == own:
+            return own, int(np.argmax(bounds))
+        reach = min(4.0 * reach, own)
     least = int(np.argmin(gaps.gap))
     return float(gaps.gap[least]), int(gaps.a[least])

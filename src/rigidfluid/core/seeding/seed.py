@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.lattice import Lattice
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.types import Pose
 from rigidfluid.core.nested.placing import check_orientation
@@ -17,7 +18,7 @@ from rigidfluid.core.seeding.clearance import Surroundings
 from rigidfluid.core.seeding.draws import Draws, share_between_ends
 from rigidfluid.core.seeding.listed_bodies import Row, columns, listed_bodies
 from rigidfluid.core.seeding.placement import Others, Placement, nearest, refuse_outside
-from rigidfluid.core.seeding.regions import DomainRegion, region_of
+from rigidfluid.core.seeding.regions import DomainRegion, Region, region_of
 from rigidfluid.core.seeding.swarm import Swarm, swarm_of, with_fraction, with_rows
 from rigidfluid.errors import SceneError
 from rigidfluid.registry import Registry
@@ -38,10 +39,12 @@ class Seeded:
 
 @dataclass(frozen=True)
 class Occupied:
-    """A ``domain`` with the ``others`` that are in it before a swarm, and the parts that are installed."""
+    """A ``domain`` with the ``others`` that are in it before a swarm, and the parts that are installed; bodies may lie
+    across periodic surfaces by the vectors of the ``lattice``."""
 
     domain: Domain
     others: Others
+    lattice: Lattice
     registry: Registry
 
 
@@ -53,7 +56,6 @@ def seed(table: SwarmTable, at: str, draws: Draws, occupied: Occupied, grow: boo
     whole, region = DomainRegion(domain), region_of(table.region, domain, f"{at}.region", registry)
     if table.region is not None:
         refuse_outside(region, whole, f"{at}.region", draws)
-    surroundings = Surroundings(domain.pieces, () if table.region is None else tuple(region.surfaces), registry)
     swarm, rows = swarm_of(table, at, domain.dimension, draws, registry), []
     if table.file is not None:
         rows = listed_bodies(table.file, f"{at}.file", domain.dimension)
@@ -63,17 +65,31 @@ def seed(table: SwarmTable, at: str, draws: Draws, occupied: Occupied, grow: boo
     else:
         assert table.number is not None
         swarm = swarm.first(table.number)
+    surroundings = _surroundings(swarm, region, occupied)
     orientation, turning = _orientations(swarm, draws)
     way: Literal["insertion", "growth", "file"] = "file"
     if rows:
         pose = _listed(rows, columns(swarm.dimension)[:2], orientation)
     else:
         pose, way = Placement(swarm, region, surroundings, others, draws, grow).placed(orientation, turning)
+        pose = Pose(surroundings.lattice.wrapped(pose.position), pose.orientation)
     gap, body = nearest(swarm.bodies, pose, others, surroundings, 2.0 * swarm.gap)
     if rows and not gap > 0.0:
         raise _overlap(f"{at}.file, line {rows[body]['line']}", pose.position[body], gap)
     record = SeededTable(number=len(swarm), fraction=swarm.volume / region.volume, gap=gap, way=way)
     return Seeded(tuple(_tables(swarm, pose, rows, draws)), record, others.joined(swarm.bodies, pose))
+
+
+def _surroundings(swarm: Swarm, region: Region, occupied: Occupied) -> Surroundings:
+    """The surroundings of a swarm: images where all bodies are shorter than the periods, else periodic surfaces."""
+    domain, lattice = occupied.domain, occupied.lattice
+    longest = max(body.bounding_radius for body in (*swarm.bodies, *occupied.others.bodies))
+    if 2.0 * longest + swarm.gap >= lattice.shortest:
+        lattice = domain.alone
+    crossed = {number for pair in domain.periodic for number in pair} if len(lattice.vectors) else set()
+    pieces = tuple(piece for number, piece in enumerate(domain.pieces) if number not in crossed)
+    surfaces = () if swarm.table.region is None else tuple(region.surfaces)
+    return Surroundings(pieces, surfaces, lattice, occupied.registry)
 
 
 def _overlap(at: str, place: FloatArray, gap: float) -> SceneError:

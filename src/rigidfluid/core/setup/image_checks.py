@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from rigidfluid.core.geometry.piece import Piece
     from rigidfluid.core.model.body import Body
+    from rigidfluid.core.model.domain import Domain
     from rigidfluid.core.setup.model import Model
 
 _ALONG = 1e-12
@@ -33,17 +34,23 @@ def crossed_lattice(model: Model) -> Lattice:
     return model.domain.cells
 
 
+def crossable_lattice(domain: Domain) -> Lattice:
+    """The lattice by which bodies may cross periodic surfaces of a domain, without vectors where other surfaces are not
+    the same in each image, or periodic ones at other angles than right ones."""
+    lattice = domain.cells
+    along = all(_is_along(domain.pieces[number], lattice) for number in _others(domain))
+    return lattice if along and _has_right_angles(lattice) else domain.alone
+
+
 def check_crossed(model: Model, at: str) -> None:
     """Refuse, with SceneError at the field ``at``, periodic surfaces that bodies cross and that are not at right angles
     to each other, walls that are not the same in each image of the domain, and forces between two bodies at any
     distance."""
     lattice = model.domain.cells
-    units = lattice.vectors / lattice.lengths[:, None]
-    if np.any(np.abs(units @ units.T - np.eye(len(units))) > _ALONG):
+    if not _has_right_angles(lattice):
         found = "bodies that cross periodic surfaces at other angles than right ones"
         raise SceneError(at, found, "pairs of surfaces at right angles to each other", "Make others walls.")
-    others = set(range(len(model.domain.pieces))) - {number for pair in model.domain.periodic for number in pair}
-    for number in sorted(others):
+    for number in _others(model.domain):
         _check_piece(model, number, lattice)
     if model.pair_forces:
         found = "bodies that cross periodic surfaces, with a long-range force between two of them"
@@ -59,6 +66,16 @@ def check_lengths(bodies: Sequence[Body], lattice: Lattice, law_range: float) ->
             )
             allowed = f"together less than {lattice.shortest:.6g}, the distance to its own image"
             raise SceneError(f"body.{number}", found, allowed, "Make the domain longer between periodic surfaces.")
+
+
+def _others(domain: Domain) -> list[int]:
+    """Numbers of the pieces that are not periodic."""
+    return sorted(set(range(len(domain.pieces))) - {number for pair in domain.periodic for number in pair})
+
+
+def _has_right_angles(lattice: Lattice) -> bool:
+    units = lattice.vectors / lattice.lengths[:, None]
+    return bool(np.all(np.abs(units @ units.T - np.eye(len(units))) <= _ALONG))
 
 
 def _check_piece(model: Model, number: int, lattice: Lattice) -> None:

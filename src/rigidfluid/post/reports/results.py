@@ -140,7 +140,8 @@ def read_results(folder: Path, *, motion_only: bool = False, model: Model | None
     population = Population.from_dict(changes)
     tables: dict[str, dict[str, FloatArray]] = {}
     if population:
-        names, tables["bodies"] = changing_bodies(folder, model.dimension, population.known(model), complete=complete)
+        wide = columns(model.dimension, periodic=bool(model.domain.periodic))
+        names, tables["bodies"] = changing_bodies(folder, wide, population.known(model), complete=complete)
         system = assemble_ever(model := population.ever(model, names))
     else:
         system = assemble(model)

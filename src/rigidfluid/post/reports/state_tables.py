@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import takewhile
 from pathlib import Path
 
@@ -11,7 +11,7 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.system import System
 from rigidfluid.core.output.history import History
-from rigidfluid.core.output.records import Row, columns, joint_coordinates, moving
+from rigidfluid.core.output.records import Row, columns, columns_of, moving
 from rigidfluid.core.output.summary_file import unreadable
 from rigidfluid.core.output.tables import KINDS, read_header, read_rows, table_path
 
@@ -25,15 +25,14 @@ def table_by_state(folder: Path, name: str, system: System, count: int, *, compl
     A last row or state that is not whole is dropped, if the table need not be ``complete``; so are states of other
     bodies, which came or went after the checkpoint.
     """
-    path, coordinates = table_path(folder, name), joint_coordinates(system)
-    names = columns(system.dimension, coordinates)[name]
+    path, names = table_path(folder, name), columns_of(system)[name]
     rows = checked_rows(path, names, complete=complete)
     if name == "bodies" and not complete:
         rows = _rows_before_change(rows, names.index("step"), names.index("body"), moving(system))
     over = len(rows) % count
     if complete and over:
         raise unreadable(path, f"{len(rows)} rows, no multiple of the {count} that a state has")
-    history = History(system.dimension, {name: rows[: len(rows) - over]}, coordinates=coordinates)
+    history = History(system.dimension, {name: rows[: len(rows) - over]}, columns_by_table={name: names})
     table = history.table(name).items()
     return {key: values.astype(np.float64).reshape(-1, count) for key, values in table if KINDS.get(key) is not str}
 
@@ -51,16 +50,17 @@ def _rows_before_change(rows: list[Row], step: int, body: int, order: Sequence[s
 
 
 def changing_bodies(
-    folder: Path, dimension: int, known: Sequence[str], *, complete: bool
+    folder: Path, names: Mapping[str, tuple[str, ...]], known: Sequence[str], *, complete: bool
 ) -> tuple[tuple[str, ...], dict[str, FloatArray]]:
-    """Names (n) of those among the ``known`` bodies that are in the table of bodies, and the table by column (s, n).
+    """Names (n) of those among the ``known`` bodies that are in the table of bodies, and the table by column (s, n);
+    ``names`` are those of the columns of each table.
 
     A body has no numbers at states in which it is not there, and an infinite gap. States without a row of energies and
     those from the first body on that is not known are dropped, if the table need not be ``complete``.
     """
     path = table_path(folder, "bodies")
-    rows = _whole_states(folder, dimension, known, complete=complete)
-    table = History(dimension, {"bodies": rows}).table("bodies")
+    rows = _whole_states(folder, names, known, complete=complete)
+    table = {name: np.array(values) for name, values in zip(names["bodies"], zip(*rows, strict=True), strict=True)}
     there = set(table["body"].tolist())
     numbers = {name: number for number, name in enumerate(name for name in known if name in there)}
     if there - numbers.keys():
@@ -77,8 +77,9 @@ def changing_bodies(
     return tuple(numbers), found | shared
 
 
-def _whole_states(folder: Path, dimension: int, known: Sequence[str], *, complete: bool) -> list[Row]:
-    names = columns(dimension)
+def _whole_states(
+    folder: Path, names: Mapping[str, tuple[str, ...]], known: Sequence[str], *, complete: bool
+) -> list[Row]:
     rows = checked_rows(table_path(folder, "bodies"), names["bodies"], complete=complete)
     if complete:
         return rows

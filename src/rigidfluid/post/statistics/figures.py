@@ -19,7 +19,7 @@ from rigidfluid.post.statistics.suspension_stress import SuspensionStress
 
 class Statistics(NamedTuple):
     """Statistics of the bodies that move: of their ``gap`` to the nearest surface the mean over bodies [length], and
-    all that the other modules of this folder measure."""
+    all that the other modules of this folder measure; ``wet`` tells whether there is a fluid around them."""
 
     units: Units
     samples: Samples
@@ -32,6 +32,7 @@ class Statistics(NamedTuple):
     profile: Profile
     contacts: ContactNetwork
     suspension: SuspensionStress | None
+    wet: bool
 
     def to_dict(self) -> dict[str, Any]:
         """Names, numbers and lists; each mean as its value and its standard error, None for what is unknown."""
@@ -83,6 +84,10 @@ class Statistics(NamedTuple):
             f"share in the largest group: {told(contacts.largest)}",
         ]
         lines += [f"force on {name}: {told(force)} [force]" for name, force in contacts.on_walls.items()]
+        if self.suspension is None and self.wet:
+            lines.append(
+                "stress of the suspension: none without stresslets; set output.stresslets = true and run again"
+            )
         if self.suspension is not None:
             total, viscosity = self.suspension.by_cause["total"], self.suspension.relative_viscosity
             unit = self.units.pressure

@@ -82,4 +82,5 @@ def measured(
         profile(samples, results.axes.index(across)),
         contact_network(rows),
         stress,
+        results.system.fluid is not None,
     )

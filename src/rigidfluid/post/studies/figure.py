@@ -36,7 +36,7 @@ def check_figure(figure: FigureTable, scene: Scene) -> None:
         if table == "energy":
             _refuse_unknown("", rest, ENERGIES)
         return
-    names = columns(scene.dimension)[str(figure.table)]
+    names = columns(scene.dimension, periodic=bool(model_of(scene).domain.periodic))[str(figure.table)]
     _refuse_unknown(".column", str(figure.column), [name for name in names if KINDS.get(name) is not str])
     if figure.table == "probes" and (figure.probe or 0) >= len(scene.output.probes):
         allowed = f"the number of one of {len(scene.output.probes)} probes, from 0"

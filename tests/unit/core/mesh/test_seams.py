@@ -139,6 +139,15 @@ def test_bodies_near_each_other_have_no_seam_between_them() -> None:
         assert_whole(initial_mesh(row, sizes), row)
 
 
+def test_seams_in_two_directions_find_room_between_many_bodies() -> None:
+    """Cells at two bodies are neighbours there and want to be apart in both directions: finer ones come between."""
+    places = [[0.65, 0.99], [1.74, 0.39], [0.88, 0.37], [0.21, 0.48], [1.21, 0.65], [0.03, 0.18], [1.21, 0.22]]
+    bodies = around(*places, [1.91, 0.72], [0.37, 0.82], [1.52, 0.07], pairs=((0, 1), (2, 3)))
+    mesh = initial_mesh(bodies, Sizes(0.3, 0.12))
+    assert_whole(mesh, bodies)
+    assert cell_quality(mesh.points, mesh.cells).min() > 0.3
+
+
 def test_a_seam_that_is_bad_next_to_a_body_is_given_up() -> None:
     """Its edges are too long for what they face there; elsewhere they may have any length."""
     far, near = around([1.0, 0.5]), around([1.83, 0.5])

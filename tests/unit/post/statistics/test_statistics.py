@@ -11,6 +11,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 from dry_scenes import ball, dry_scene
+from scenes import wet_tables
 
 import rigidfluid
 from rigidfluid.api import Simulation
@@ -383,6 +384,19 @@ def test_what_a_film_resists_is_apart_from_what_its_contact_repels(tmp_path: Pat
     repelled = 50.0 * (0.1 - pairs.columns["gap"])[:, None] * pairs.vectors("n")
     np.testing.assert_allclose(found["contacts"], pairs.stress(repelled), rtol=1e-6, atol=1e-6)
     assert np.abs(found["lubrication"]).max() > 0.01
+
+
+def test_a_run_in_a_fluid_without_stresslets_tells_how_to_have_the_stress(tmp_path: Path) -> None:
+    disk = {"type": "sphere", "radius": 0.1, "density": 2.0}
+    disks = [disk | {"position": [x, 0.5], "velocity": [0.1, 0.0]} for x in (0.3, 0.7)]
+    mesh = {"size": 0.3, "size_body": 0.15}
+    hints = []
+    for asked in (False, True):
+        tables = wet_tables(*disks, mesh=mesh, end=0.02, step=0.01, output={"stresslets": asked})
+        rigidfluid.run(rigidfluid.scene_from_dict(tables), tmp_path)
+        found, _ = statistics(tmp_path, since=0.01)
+        hints.append([line for line in found.lines if "output.stresslets = true" in line])
+    assert [len(each) for each in hints] == [1, 0]
 
 
 @pytest.mark.long

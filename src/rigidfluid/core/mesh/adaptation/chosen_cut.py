@@ -13,8 +13,8 @@ import scipy
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.geometry.images import periods
 from rigidfluid.core.mechanics.frames import distance_to_body
-from rigidfluid.core.mesh.adaptation.recut import neighbours, recut
-from rigidfluid.core.mesh.adaptation.smooth_cut import smooth_cut
+from rigidfluid.core.mesh.adaptation.recut import Neighbours, neighbours, recut
+from rigidfluid.core.mesh.adaptation.smooth_cut import find_cut, smooth_cut
 from rigidfluid.core.mesh.distribution import surface_vertices
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation.periodic import Seams, on_periodic_surfaces
@@ -67,26 +67,24 @@ class _Link(NamedTuple):
     apart: tuple[int, ...]
 
 
-def cut_around(mesh: Mesh, fluid_domain: FluidDomain, winding: IntArray, reach: float) -> Mesh:
+def cut_around(mesh: Mesh, fluid_domain: FluidDomain, winding: IntArray, reach: float, rounds: int = 0) -> Mesh:
     """The mesh cut open so that those images of bodies are whole that are in the domain, each cell in the period of the
     nearest one.
 
     The bodies of the mesh are images of those of ``fluid_domain``, whose own poses are so many periods ahead of them,
     ``winding`` (n, k). Bodies with a gap of less than ``reach`` [length] get images next to each other if they
-    can. Edges between others are bisected, so that no cell is at two of them. Raises MeshError if no seam fits.
+    can. Edges between others are bisected, so that no cell is at two of them; where seams in several directions do not
+    fit, edges at bodies too, at most so many ``rounds``. Raises MeshError if no seam fits.
     """
     seams = Seams.from_domain(len(fluid_domain.bodies), fluid_domain.domain)
     wishes, together = _wishes(mesh, fluid_domain, seams, reach)
-    while len(edges := _between(mesh, wishes)):
-        length = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1)
-        edges = edges[one_per_cell(mesh.cells, edges, length, len(mesh.points))]
-        mesh = bisect(mesh, edges, mesh.points[edges].mean(axis=1))
-        wishes = wishes.with_others(len(edges))
-    at_body = np.asarray(wishes.on_body[mesh.cells].any(axis=1))
-    shift = _nearest(mesh, wishes, seams.ways)
-    first = np.argmax(wishes.on_body[mesh.cells[at_body]], axis=1)
-    shift[at_body] = wishes.shift[mesh.cells[at_body, first]]
-    made = recut(mesh, seams, smooth_cut(shift, neighbours(mesh, seams), at_body))
+    mesh, wishes = _bisected(mesh, wishes, _between(mesh, wishes))
+    for _ in range(rounds):
+        _, conflicts = find_cut(*_wanted(mesh, wishes, seams))
+        if not len(conflicts):
+            break
+        mesh, wishes = _bisected(mesh, wishes, _edges_at_bodies(mesh, wishes, seams, conflicts))
+    made = recut(mesh, seams, smooth_cut(*_wanted(mesh, wishes, seams)))
     return replace(made, periods=Periods(seams.ways, winding + fluid_domain.periods_outside() - together))
 
 
@@ -121,6 +119,36 @@ def _between(mesh: Mesh, wishes: _Wishes) -> IntArray:
     one, other = edges.T
     differ = (wishes.shift[one] != wishes.shift[other]).any(axis=1)
     return np.asarray(edges[wishes.on_body[one] & wishes.on_body[other] & differ])
+
+
+def _edges_at_bodies(mesh: Mesh, wishes: _Wishes, seams: Seams, cells: IntArray) -> IntArray:
+    """Edges (E, 2) between the vertices of ``cells`` (C,) on bodies, or images of them, and others that are on none."""
+    root, _ = seams.originals(mesh)
+    chosen = np.zeros(len(mesh.points), dtype=bool)
+    chosen[root[mesh.cells[cells]]] = True
+    chosen = chosen[root] & wishes.on_body
+    edges = distinct_edges(mesh.cells)
+    one, other = edges.T
+    return np.asarray(edges[(chosen[one] & ~wishes.on_body[other]) | (chosen[other] & ~wishes.on_body[one])])
+
+
+def _bisected(mesh: Mesh, wishes: _Wishes, edges: IntArray) -> tuple[Mesh, _Wishes]:
+    """The mesh with all ``edges`` (E, 2) bisected, and its wishes."""
+    while len(edges):
+        length = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1)
+        now = one_per_cell(mesh.cells, edges, length, len(mesh.points))
+        mesh = bisect(mesh, edges[now], mesh.points[edges[now]].mean(axis=1))
+        wishes, edges = wishes.with_others(int(now.sum())), edges[~now]
+    return mesh, wishes
+
+
+def _wanted(mesh: Mesh, wishes: _Wishes, seams: Seams) -> tuple[IntArray, Neighbours, BoolArray]:
+    """The shift (M, k) that each cell wants, pairs of neighbours, and which cells are at bodies (M,)."""
+    at_body = np.asarray(wishes.on_body[mesh.cells].any(axis=1))
+    shift = _nearest(mesh, wishes, seams.ways)
+    first = np.argmax(wishes.on_body[mesh.cells[at_body]], axis=1)
+    shift[at_body] = wishes.shift[mesh.cells[at_body, first]]
+    return shift, neighbours(mesh, seams), at_body
 
 
 def _to_domain(mesh: Mesh, fluid_domain: FluidDomain, on_each: Sequence[IntArray], ways: FloatArray) -> IntArray:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -62,6 +63,9 @@ LONGEST_EDGE = 2.5
 """A re-made mesh with an edge longer than this many times the wanted size is refused: MMG has done nothing."""
 
 
+MOST_ROUNDS = 3
+"""Most often that edges at bodies are bisected to make room for seams in several directions."""
+
 NEAR = 4.0
 """Bodies with a gap of at most so many of the cells on them have no seam between them, if that can be."""
 
@@ -94,13 +98,14 @@ def well_cut(mesh: Mesh, fluid_domain: FluidDomain, sizes: Sizes, winding: IntAr
     kept = replace(mesh, periods=Periods(fluid_domain.domain.lattice, winding))
     if not is_badly_cut(mesh, fluid_domain, sizes):
         return kept
+    must = crosses_bodies(mesh, len(fluid_domain.bodies), fluid_domain.domain)
     failures = []
-    for reach in (NEAR * sizes.size_body, 0.0):
+    for rounds, reach in product((0, MOST_ROUNDS) if must else (0,), (NEAR * sizes.size_body, 0.0)):
         try:
-            return cut_around(mesh, fluid_domain, winding, reach)
+            return cut_around(mesh, fluid_domain, winding, reach, rounds)
         except MeshError as error:
             failures.append(error)
-    if crosses_bodies(mesh, len(fluid_domain.bodies), fluid_domain.domain):
+    if must:
         raise failures[0]
     return kept
 

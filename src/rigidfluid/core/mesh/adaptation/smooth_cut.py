@@ -22,14 +22,25 @@ def smooth_cut(shift: IntArray, pairs: Neighbours, held: BoolArray) -> IntArray:
     One direction comes after the other. Cells between which one seam already runs have one shift in the next direction.
     Raises MeshError where the cells that are held want different ones.
     """
+    found, conflicts = find_cut(shift, pairs, held)
+    if len(conflicts):
+        raise MeshError("mesh", "bodies too near for a seam between them", "a cell between bodies", REMEDY)
+    return found
+
+
+def find_cut(shift: IntArray, pairs: Neighbours, held: BoolArray) -> tuple[IntArray, IntArray]:
+    """The shift of `smooth_cut` (M, k), or the cells (C,) that are held and want different ones."""
     found = shift.copy()
     apart = np.zeros(len(pairs.cells), dtype=bool)
     for axis in range(shift.shape[1]):
         groups = _Groups(pairs, apart, axis, len(shift))
+        conflicts = groups.conflicts(shift[:, axis], held)
+        if len(conflicts):
+            return found, conflicts
         found[:, axis] = groups.smoothed(shift[:, axis], held)
         one, other = found[pairs.cells.T, axis]
         apart |= pairs.apart[:, axis] + one != other
-    return found
+    return found, np.zeros(0, dtype=np.int64)
 
 
 class _Groups:
@@ -64,14 +75,22 @@ class _Groups:
             raise MeshError("mesh", "a seam that meets itself", "seams that cross each other once", REMEDY)
         return place
 
+    def conflicts(self, shift: IntArray, held: BoolArray) -> IntArray:
+        """Cells (C,) that are ``held`` (M,) in groups of which these want different shifts."""
+        cells = np.flatnonzero(held)
+        group, base = self._group[cells], (shift - self._place)[cells]
+        first = np.zeros(self._count, dtype=np.int64)
+        first[group] = base
+        bad = np.zeros(self._count, dtype=bool)
+        bad[group[first[group] != base]] = True
+        return np.asarray(cells[bad[group]])
+
     def smoothed(self, shift: IntArray, held: BoolArray) -> IntArray:
         """Shifts (M,) near ``shift`` (M,), the same of cells that are ``held`` (M,), with short seams."""
         base, group, fixed = shift - self._place, self._group, np.zeros(self._count, dtype=bool)
         found = np.rint(np.bincount(group, base) / np.bincount(group)).astype(np.int64)
         found[group[held]] = base[held]
         fixed[group[held]] = True
-        if (found[group[held]] != base[held]).any():
-            raise MeshError("mesh", "bodies too near for a seam between them", "a cell between bodies", REMEDY)
         order = np.argsort(self._owner, kind="stable")
         start = np.searchsorted(self._owner[order], np.arange(self._count + 1))
         for _ in range(_SWEEPS):

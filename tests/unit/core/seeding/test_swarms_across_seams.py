@@ -1,0 +1,112 @@
+"""Swarms lie across periodic surfaces, and keep their gaps to images of each other."""
+
+from __future__ import annotations
+
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from swarms import BALL, DISK, radii, seeded, start
+
+from rigidfluid import Scene
+from rigidfluid.api import Simulation
+from rigidfluid.core.case.load import scene_from_dict
+from rigidfluid.core.case.scene_model import model_of
+from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.types import Pose
+from rigidfluid.detectors.brute_force import BruteForceDetector
+
+SIDES = (("left", "right"), ("bottom", "top"), ("back", "front"))
+MESH = {"size": 0.2, "size_body": 0.08}
+WET = {"density": 1.0, "viscosity": 0.1}
+
+
+def periodic(*axes: int) -> dict[str, Any]:
+    return {"boundary": [{"on": side, "type": "periodic"} for axis in axes for side in SIDES[axis]]}
+
+
+def gaps_to_images(scene: Scene, *axes: int) -> FloatArray:
+    """Gaps of balls to all others or the nearest images of them, by the formula (n, n) [length]."""
+    position, size = start(scene).position, radii(scene)
+    apart = position[:, None] - position
+    apart[..., axes] -= np.rint(apart[..., axes])
+    gaps = np.linalg.norm(apart, axis=2) - size - size[:, None]
+    np.fill_diagonal(gaps, np.inf)
+    return gaps
+
+
+def across(scene: Scene, axis: int) -> int:
+    """Number of balls that lie across the surfaces of an axis."""
+    place = start(scene).position[:, axis]
+    return int(np.sum(np.minimum(place, 1.0 - place) < radii(scene)))
+
+
+@pytest.mark.parametrize(
+    ("dimension", "shape", "fraction", "axes"),
+    [(2, DISK, 0.2, (0,)), (2, DISK, 0.75, (0, 1)), (3, BALL, 0.1, (0, 1, 2)), (3, BALL, 0.5, (0, 2))],
+)
+def test_gaps_are_kept_to_images_and_to_walls_alone(
+    dimension: int, shape: dict[str, Any], fraction: float, axes: tuple[int, ...]
+) -> None:
+    scene = seeded(dimension, shape, fraction=fraction, gap=0.002, tables=periodic(*axes))
+    place = start(scene).position
+    assert np.all((place >= 0.0) & (place < 1.0))
+    assert gaps_to_images(scene, *axes).min() >= 0.002
+    assert [across(scene, axis) > 0 for axis in range(dimension)] == [axis in axes for axis in range(dimension)]
+
+
+def test_the_naive_detector_finds_no_smaller_gap_among_all_images() -> None:
+    ellipse = {"type": "ellipsoid", "semi_axes": [0.16, 0.08]}
+    scene = seeded(2, ellipse, fraction=0.6, gap=0.002, tables=periodic(0, 1))
+    pose, offsets = start(scene), np.array(list(product((0, 1, -1), repeat=2)))
+    shapes = [body.shape for body in model_of(scene).all_bodies] * len(offsets)
+    position = (offsets[:, None] + pose.position).reshape(-1, 2)
+    naive = BruteForceDetector(BruteForceDetector.Options(), shapes, [])
+    found = naive.detect(Pose(position, np.tile(pose.orientation, (len(offsets), 1))), None, 0.01)
+    least = found.gap[found.body_a < len(pose.position)].min()
+    assert least == pytest.approx(scene.swarm[0].seeded.gap, abs=1e-9)
+    assert least >= 0.002
+
+
+def test_a_region_holds_its_bodies_beside_periodic_surfaces_too() -> None:
+    """They keep clear of a listed body that lies across, also where its image is."""
+    post = {"name": "post", "type": "sphere", "radius": 0.2, "density": 1.0, "position": [1.0, 0.5]}
+    region = {"type": "box", "lower": [0.0, 0.0], "upper": [0.5, 1.0]}
+    tables = {"body": [post], **periodic(0)}
+    scene = seeded(2, DISK, number=20, gap=0.01, region=region, tables=tables)
+    place = start(scene).position[1:]
+    assert np.all((place[:, 0] > 0.06) & (place[:, 0] < 0.44))
+    assert gaps_to_images(scene, 0).min() >= 0.01
+
+
+def test_a_body_of_a_file_may_lie_across(tmp_path: Path) -> None:
+    file = tmp_path / "stones.csv"
+    file.write_text("x,y,radius\n0.98,0.5,0.1\n0.2,0.5,0.1\n")
+    shape = {"type": "sphere", "radius": 1.0}
+    scene = seeded(2, shape, file=str(file), tables=periodic(0))
+    assert scene.swarm[0].seeded.gap == pytest.approx(0.02)
+    assert start(scene).position[0].tolist() == [0.98, 0.5]
+
+
+def test_a_single_body_has_the_gap_to_its_own_image() -> None:
+    scene = seeded(2, {"type": "sphere", "radius": 0.3}, number=1, tables=periodic(0, 1))
+    assert scene.swarm[0].seeded.gap == pytest.approx(0.4)
+
+
+def test_they_keep_clear_of_periodic_surfaces_that_bodies_do_not_cross() -> None:
+    """An obstacle is not there again in the images of the domain."""
+    obstacle = {"name": "post", "type": "sphere", "radius": 0.1, "position": [0.5, 0.5]}
+    domain = {"type": "channel", "lower": [0.0, 0.0], "upper": [1.0, 1.0], "obstacle": [obstacle]}
+    scene = seeded(2, DISK, number=40, tables={"domain": domain, "fluid": WET, "mesh": MESH, **periodic(0)})
+    assert across(scene, 0) == 0
+
+
+def test_a_run_in_a_fluid_starts_so() -> None:
+    law = {"law": "normal", "range": 0.01, "epsilon": "auto", "impact_speed": 1.0}
+    mesh = {"mesh": MESH, "contact": law, "fluid": WET}
+    scene = seeded(2, {"type": "sphere", "radius": 0.12}, fraction=0.3, gap=0.03, tables=mesh | periodic(0, 1))
+    assert across(scene, 0) + across(scene, 1) > 0
+    run = Simulation(scene_from_dict(scene.to_dict()))
+    assert run.step().ledger.residual == pytest.approx(0.0, abs=1e-6)
