@@ -12,6 +12,8 @@ from pages._measured_steps import figure, figures, measured
 from rigidfluid import Scene
 
 DISK = {"type": "sphere", "radius": 0.25}
+CELL = {"lower": [0.0, 0.0], "upper": [20.0, 10.0]}
+"""In which the disks are at first, none across its ends."""
 
 
 def page(work: Work) -> Page:
@@ -28,9 +30,18 @@ def disks() -> Scene:
         {
             "scene": {"name": "sheared_disks", "dimension": 2, "seed": 1},
             "fluid": {"density": 1.0, "viscosity": 1.0, "initial": ["y - 5", "0"]},
-            "domain": {"lower": [0.0, 0.0], "upper": [20.0, 10.0]},
+            "domain": CELL,
             "boundary": [{"on": "all", "type": "periodic"}, *walls],
-            "swarm": [{"name": "disk", "number": 200, "density": 1.0, "gap": 0.06, "shape": [DISK]}],
+            "swarm": [
+                {
+                    "name": "disk",
+                    "number": 200,
+                    "density": 1.0,
+                    "gap": 0.06,
+                    "shape": [DISK],
+                    "region": {"type": "box", **CELL},
+                }
+            ],
             "contact": {"law": "normal", "range": 0.05, "epsilon": "auto", "impact_speed": 0.25},
             "mesh": {"size": 0.5, "size_body": 0.16, "growth": 0.3, "cells_per_gap": 1, "refinements": 1},
             "time": {"end": 1.0, "step": 0.04},

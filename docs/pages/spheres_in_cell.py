@@ -13,6 +13,8 @@ from rigidfluid import Scene
 
 SIDES = ("left", "bottom", "back")
 SPHERE = {"type": "sphere", "radius": 0.72}
+CELL = {"lower": [0.0, 0.0, 0.0], "upper": [10.0, 10.0, 10.0]}
+"""In which the spheres are at first, none across its sides."""
 
 
 def page(work: Work) -> Page:
@@ -29,9 +31,18 @@ def spheres() -> Scene:
         {
             "scene": {"name": "spheres_in_cell", "dimension": 3, "seed": 1},
             "fluid": {"density": 1.0, "viscosity": 0.1, "gravity": [0.0, 0.0, -1.0]},
-            "domain": {"lower": [0.0, 0.0, 0.0], "upper": [10.0, 10.0, 10.0]},
+            "domain": CELL,
             "boundary": [{"on": "all", "type": "periodic"}, *held],
-            "swarm": [{"name": "sphere", "number": 64, "density": 2.0, "gap": 0.2, "shape": [SPHERE]}],
+            "swarm": [
+                {
+                    "name": "sphere",
+                    "number": 64,
+                    "density": 2.0,
+                    "gap": 0.2,
+                    "shape": [SPHERE],
+                    "region": {"type": "box", **CELL},
+                }
+            ],
             "contact": {"law": "normal", "range": 0.05, "epsilon": "auto", "impact_speed": 0.5},
             "mesh": {"size": 1.0, "size_body": 0.5, "growth": 0.3, "cells_per_gap": 1, "refinements": 0},
             "time": {"end": 3.0, "step": 0.1},
