@@ -104,7 +104,8 @@ class JointLinkage:
             here = slice(start, start := start + len(one.compliance))
             one.add_rows(at, rows[here])
             rate[here] = one.rate(time)
-        rate -= np.einsum("cni,ni->c", rows, self._prescribed_part(bodies, kinematics, time))
+        if self.driven:
+            rate -= np.einsum("cni,ni->c", rows, self._prescribed_part(bodies, kinematics, time))
         return Links(self._rows_on_motions(rows, kinematics), rate, self._compliance)
 
     def unloaded(self, motions: Pose) -> LinkLoad:
@@ -150,6 +151,8 @@ class JointLinkage:
 
     def spring_wrench(self, motions: Pose, time: float) -> Wrench:
         """Wrenches of the springs on the N motions."""
+        if not self._springs:
+            return nothing(motions)
         bodies, kinematics = self._bodies(motions, time)
         return kinematics.motion_wrench(self._wrench_on_bodies(bodies))
 

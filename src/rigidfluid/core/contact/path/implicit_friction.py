@@ -183,7 +183,10 @@ def contacts_of_mean_force(
     for _ in range(_HALVINGS):
         between = replace(middle, gap=0.5 * (near + far))
         weaker = middle.sign * (normal_part(law.force(between), between) - force) < 0.0
+        before = near, far
         near, far = np.where(weaker, near, between.gap), np.where(weaker, between.gap, far)
+        if np.array_equal((near, far), before):
+            break
     return replace(middle, gap=0.5 * (near + far))
 
 
