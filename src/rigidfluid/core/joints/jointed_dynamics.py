@@ -124,11 +124,12 @@ class JointedDynamics(OwnMotions):
         """Change the twists by ``wrench`` and springs, while dampers act, and then by rigid joints."""
         if not self._begun:
             self._begin(time)
-        springs, before = self._linkage.spring_wrench(self.pose, self._time), self._missing_rate()
+        springs = self._linkage.spring_wrench(self.pose, self._time)
+        before = None if self._rigid.all() else self._missing_rate()
         drive_work = time * self._linkage.spring_power(self.pose, self._time)
         self._inner.kick(wrench_sum(wrench, springs), time, at)
         impulse, damped = self._rigid_impulse(), 0.0
-        if not self._rigid.all():
+        if before is not None:
             undamped = self._missing_rate() - self._here.delassus @ impulse
             by_dampers, damped = self._damper_impulse(before, undamped, time)
             impulse += by_dampers
@@ -138,7 +139,8 @@ class JointedDynamics(OwnMotions):
         """Move the poses so that rigid joints fit at the end, where they then take out of the twist what they do not
         allow."""
         impulse = self._close(time)
-        self._add_work(impulse, self._motion_impulse(impulse))
+        if impulse.any():
+            self._add_work(impulse, self._motion_impulse(impulse))
         self._time += time
         self._here = self._rows_here()
         self._push(self._rigid_impulse())
@@ -162,7 +164,8 @@ class JointedDynamics(OwnMotions):
         impulse, rigid, end = np.zeros(len(self._rigid)), self._rigid, self._time + time
         for _ in range(_MOST_ITERATIONS):
             trial = self._inner.copied()
-            trial.apply_impulse(self._motion_impulse(impulse))
+            if impulse.any():
+                trial.apply_impulse(self._motion_impulse(impulse))
             trial.drift(time)
             misfit = self._linkage.misfit(trial.pose, end)
             if np.all(np.abs(misfit) <= self._linkage.tolerance(trial.pose)):
