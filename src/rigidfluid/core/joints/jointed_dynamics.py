@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from copy import copy
 from dataclasses import replace
+from math import prod
 from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
@@ -180,7 +181,7 @@ class JointedDynamics(OwnMotions):
     def _rigid_impulse(self) -> FloatArray:
         """Impulses (c,) of rigid joints that make the twist what they allow."""
         impulse, rigid = np.zeros(len(self._rigid)), self._rigid
-        impulse[rigid] = joint_forces(self._here.delassus[rigid][:, rigid], self._missing_rate()[rigid])
+        impulse[rigid] = joint_forces(self._here.among_rigid, self._missing_rate()[rigid])
         return impulse
 
     def _damper_impulse(self, before: FloatArray, undamped: FloatArray, time: float) -> tuple[FloatArray, float]:
@@ -188,7 +189,7 @@ class JointedDynamics(OwnMotions):
         that resist them; and the energy that they take."""
         rigid, damped, delassus = self._rigid, ~self._rigid, self._here.delassus
         across, impulse = delassus[rigid][:, damped], np.zeros(len(rigid))
-        resisting = -joint_forces(delassus[rigid][:, rigid], across)
+        resisting = -joint_forces(self._here.among_rigid, across)
         alone = delassus[damped][:, damped] + across.T @ resisting
         start, end = -before[damped], -undamped[damped]
         impulse[damped] = damper_impulse(alone, self._here.links.compliance[damped], start, end, time)
@@ -222,9 +223,10 @@ class JointedDynamics(OwnMotions):
 
     def _rows_here(self) -> _Rows:
         links = self._linkage.links(self.pose, self._time)
-        rows = links.rows.reshape(len(links.rate), flat(self.twist).size)
+        rows, rigid = links.rows.reshape(len(links.rate), prod(links.rows.shape[1:])), links.compliance == 0.0
         responses = self._inner.inverse_masses(0.0) @ rows.T
-        return _Rows(links, rows, responses, rows @ responses)
+        delassus = rows @ responses
+        return _Rows(links, rows, responses, delassus, delassus[rigid][:, rigid])
 
     def _accelerations(self, time: float) -> FloatArray:
         """Mean accelerations in parts of a time (parts, N, d+k)."""
@@ -238,9 +240,11 @@ class JointedDynamics(OwnMotions):
 
 
 class _Rows(NamedTuple):
-    """Linearised links in one pose: ``rows`` C (c, N·(d+k)), ``responses`` W Cᵀ to impulses, ``delassus`` C W Cᵀ."""
+    """Linearised links in one pose: ``rows`` C (c, N·(d+k)), ``responses`` W Cᵀ to impulses, ``delassus`` C W Cᵀ, and
+    that ``among_rigid`` rows."""
 
     links: Links
     rows: FloatArray
     responses: FloatArray
     delassus: FloatArray
+    among_rigid: FloatArray

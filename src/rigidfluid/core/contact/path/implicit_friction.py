@@ -240,9 +240,10 @@ def _blocks(entries: FloatArray, dense: bool) -> Any:
 def _directions(tangents: FloatArray, pulled: FloatArray, tried: FloatArray, also_ahead: BoolArray) -> FloatArray:
     """Derivative (m, c, c) along the ``tangents`` (m, c, c) of forces ``pulled`` by those ``tried``, which were
     shortened to them; those ``also_ahead`` (m, 1) are shortened by the same factor."""
-    ahead = _over(tried, _length(tried))
+    length = _length(tried)
+    ahead = _over(tried, length)
     sideways = tangents - np.where(also_ahead, 0.0, 1.0)[:, :, None] * ahead[:, :, None] * ahead[:, None, :]
-    part = np.where(_length(tried) > 0.0, _over(_length(pulled), _length(tried)), 1.0)
+    part = np.where(length > 0.0, _over(_length(pulled), length), 1.0)
     return np.asarray(part[:, :, None] * sideways)
 
 
