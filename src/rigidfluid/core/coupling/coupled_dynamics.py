@@ -85,7 +85,7 @@ class CoupledDynamics(OwnMotions):
         width = self._velocity.shape[1]
         outside = np.ones(self._velocity.size)
         outside[self._model.velocities] = 0.0
-        own = sparse.diags(outside) @ block_diagonal(*self._own) @ sparse.diags(outside)
+        own = sparse.diags(outside) @ sparse.csr_matrix(block_diagonal(*self._own)) @ sparse.diags(outside)
         modes = self._model.modes
         dense = (modes * _phi(self._model.decay * time)) @ modes.T
         place = self._model.velocities

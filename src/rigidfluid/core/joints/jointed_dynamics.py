@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from copy import copy
 from dataclasses import replace
-from typing import NamedTuple, Protocol, Self
+from math import prod
+from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
-from scipy import sparse
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.joints.damping import damper_impulse
 from rigidfluid.core.joints.joint_forces import joint_forces
+from rigidfluid.core.mechanics.matrices import sparse_as
 from rigidfluid.core.mechanics.own_motions import OwnMotions
 from rigidfluid.core.mechanics.wrenches import flat, nothing, wrench_sum
 from rigidfluid.core.model.dynamics import ImpulsiveDynamics, LinkWork
@@ -101,12 +102,12 @@ class JointedDynamics(OwnMotions):
         """Inverse mass along a direction without joints; see `inverse_mass`."""
         return self._inner.inverse_mass_along(body, direction)
 
-    def inverse_masses(self, time: float) -> sparse.csr_matrix:
+    def inverse_masses(self, time: float) -> Any:
         """W - W Cᵀ (C W Cᵀ)⁻¹ C W, C of rigid joints, W without them."""
-        alone, rows = self._inner.inverse_masses(time), sparse.csr_matrix(self._here.rows[self._rigid])
+        alone, rows = self._inner.inverse_masses(time), self._here.rows[self._rigid]
         responses = alone @ rows.T
-        held = joint_forces((rows @ responses).toarray(), responses.T.toarray())
-        return sparse.csr_matrix(alone - responses @ sparse.csr_matrix(held))
+        held = joint_forces(rows @ responses, responses.T)
+        return alone - sparse_as(alone, responses) @ sparse_as(alone, held)
 
     def copied(self) -> Self:
         other = copy(self)
@@ -128,27 +129,26 @@ class JointedDynamics(OwnMotions):
         """Change the twists by ``wrench`` and springs, while dampers act, and then by rigid joints."""
         if not self._begun:
             self._begin(time)
-        springs, before = self._linkage.spring_wrench(self.pose, self._time), self._missing_rate()
+        springs = self._linkage.spring_wrench(self.pose, self._time)
+        before = None if self._rigid.all() else self._missing_rate()
         drive_work = time * self._linkage.spring_power(self.pose, self._time)
         self._inner.kick(wrench_sum(wrench, springs), time, at)
         impulse, damped = self._rigid_impulse(), 0.0
-        if not self._rigid.all():
+        if before is not None:
             undamped = self._missing_rate() - self._here.delassus @ impulse
             by_dampers, damped = self._damper_impulse(before, undamped, time)
             impulse += by_dampers
-        self._inner.apply_impulse(self._motion_impulse(impulse))
-        self._add_work(impulse, drive_work, damped, time * flat(springs))
+        self._push(impulse, drive_work, damped, time * flat(springs))
 
     def drift(self, time: float) -> None:
         """Move the poses so that rigid joints fit at the end, where they then take out of the twist what they do not
         allow."""
         impulse = self._close(time)
-        self._add_work(impulse)
+        if impulse.any():
+            self._add_work(impulse, self._motion_impulse(impulse))
         self._time += time
         self._here = self._rows_here()
-        closing = self._rigid_impulse()
-        self._inner.apply_impulse(self._motion_impulse(closing))
-        self._add_work(closing)
+        self._push(self._rigid_impulse())
 
     def _begin(self, time: float) -> None:
         """Change from the rates before a corner of a drive or stroke to those after it, where the first drift, twice as
@@ -162,15 +162,15 @@ class JointedDynamics(OwnMotions):
         self._here = self._here._replace(links=after)
         self._inner.begin(ahead)
         impulse = self._rigid_impulse()
-        self._inner.apply_impulse(self._motion_impulse(impulse))
-        self._add_work(impulse, 0.5 * float(impulse @ (before.rate - after.rate)))
+        self._push(impulse, 0.5 * float(impulse @ (before.rate - after.rate)))
 
     def _close(self, time: float) -> FloatArray:
         """Drift after the impulses (c,) that make rigid joints fit at the end, by Newton's method."""
         impulse, rigid, end = np.zeros(len(self._rigid)), self._rigid, self._time + time
         for _ in range(_MOST_ITERATIONS):
             trial = self._inner.copied()
-            trial.apply_impulse(self._motion_impulse(impulse))
+            if impulse.any():
+                trial.apply_impulse(self._motion_impulse(impulse))
             trial.drift(time)
             misfit = self._linkage.misfit(trial.pose, end)
             if np.all(np.abs(misfit) <= self._linkage.tolerance(trial.pose)):
@@ -185,16 +185,16 @@ class JointedDynamics(OwnMotions):
     def _rigid_impulse(self) -> FloatArray:
         """Impulses (c,) of rigid joints that make the twist what they allow."""
         impulse, rigid = np.zeros(len(self._rigid)), self._rigid
-        impulse[rigid] = joint_forces(self._here.delassus[np.ix_(rigid, rigid)], self._missing_rate()[rigid])
+        impulse[rigid] = joint_forces(self._here.among_rigid, self._missing_rate()[rigid])
         return impulse
 
     def _damper_impulse(self, before: FloatArray, undamped: FloatArray, time: float) -> tuple[FloatArray, float]:
         """Impulses (c,) of dampers, whose rates lack ``before`` and without them ``undamped`` (c,), and of rigid joints
         that resist them; and the energy that they take."""
         rigid, damped, delassus = self._rigid, ~self._rigid, self._here.delassus
-        across, impulse = delassus[np.ix_(rigid, damped)], np.zeros(len(rigid))
-        resisting = -joint_forces(delassus[np.ix_(rigid, rigid)], across)
-        alone = delassus[np.ix_(damped, damped)] + across.T @ resisting
+        across, impulse = delassus[rigid][:, damped], np.zeros(len(rigid))
+        resisting = -joint_forces(self._here.among_rigid, across)
+        alone = delassus[damped][:, damped] + across.T @ resisting
         start, end = -before[damped], -undamped[damped]
         impulse[damped] = damper_impulse(alone, self._here.links.compliance[damped], start, end, time)
         impulse[rigid] = resisting @ impulse[damped]
@@ -204,12 +204,18 @@ class JointedDynamics(OwnMotions):
         """Rates that the twist lacks, rate - C u (c,)."""
         return np.asarray(self._here.links.rate - self._here.rows @ flat(self.twist).ravel())
 
-    def _add_work(
+    def _push(
         self, impulse: FloatArray, drive_work: float = 0.0, damped: float = 0.0, springs: FloatArray | float = 0.0
     ) -> None:
-        """Add to the work of joints: impulses (c,) here, at the rates here, and works of drives, dampers and
-        springs."""
-        so_far, pushed = self._work, self._motion_impulse(impulse) + springs
+        """Change the twist by impulses (c,) of links, and add to the work of joints also that of the ``springs``."""
+        pushed = self._motion_impulse(impulse)
+        self._inner.apply_impulse(pushed)
+        self._add_work(impulse, pushed + springs, drive_work, damped)
+
+    def _add_work(self, impulse: FloatArray, pushed: FloatArray, drive_work: float = 0.0, damped: float = 0.0) -> None:
+        """Add to the work of joints: impulses (c,) here, at the rates here, that of all on the motions (N, d+k), and
+        works of drives and dampers."""
+        so_far = self._work
         drive_work += float(impulse @ self._here.links.rate)
         self._work = LinkWork(
             so_far.impulse + impulse, so_far.pushed + pushed, so_far.drive_work + drive_work, so_far.damped + damped
@@ -221,9 +227,10 @@ class JointedDynamics(OwnMotions):
 
     def _rows_here(self) -> _Rows:
         links = self._linkage.links(self.pose, self._time)
-        rows = links.rows.reshape(len(links.rate), flat(self.twist).size)
+        rows, rigid = links.rows.reshape(len(links.rate), prod(links.rows.shape[1:])), links.compliance == 0.0
         responses = self._inner.inverse_masses(0.0) @ rows.T
-        return _Rows(links, rows, responses, rows @ responses)
+        delassus = rows @ responses
+        return _Rows(links, rows, responses, delassus, delassus[rigid][:, rigid])
 
     def _accelerations(self, time: float) -> FloatArray:
         """Mean accelerations in parts of a time (parts, N, d+k)."""
@@ -237,9 +244,11 @@ class JointedDynamics(OwnMotions):
 
 
 class _Rows(NamedTuple):
-    """Linearised links in one pose: ``rows`` C (c, N·(d+k)), ``responses`` W Cᵀ to impulses, ``delassus`` C W Cᵀ."""
+    """Linearised links in one pose: ``rows`` C (c, N·(d+k)), ``responses`` W Cᵀ to impulses, ``delassus`` C W Cᵀ, and
+    that ``among_rigid`` rows."""
 
     links: Links
     rows: FloatArray
     responses: FloatArray
     delassus: FloatArray
+    among_rigid: FloatArray

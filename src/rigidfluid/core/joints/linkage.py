@@ -17,7 +17,6 @@ from rigidfluid.core.joints.joint import PlacedJoint
 from rigidfluid.core.joints.joint_forces import joint_forces
 from rigidfluid.core.joints.joint_parts import ground_parts, joint_parts
 from rigidfluid.core.joints.jointed_dynamics import JointedDynamics
-from rigidfluid.core.joints.link_parts import LinkParts
 from rigidfluid.core.joints.markers import Markers, PlacedPair
 from rigidfluid.core.joints.pair_spring import PairSpring
 from rigidfluid.core.joints.redundancy import motion_of, refuse_redundant, refuse_void
@@ -70,8 +69,9 @@ class JointLinkage:
         self._motions, self._prescribed_twist = motions, prescribed_twist
         self._prescribed, self._carrier = motions.prescribed, motions.carrier
         self._parts = [*(joint_parts(joint, pose) for joint in joints), *(ground_parts(link, pose) for link in ground)]
-        self._slices = _slices(self._parts)
         self._constraints = [one for part in self._parts for one in part.constraints]
+        self._rows_of_parts = _slices([part.rows for part in self._parts])
+        self._rows_of_constraints = _slices([len(one.compliance) for one in self._constraints])
         self._springs: list[Spring] = [*(one for part in self._parts for one in part.springs), *forces]
         self._compliance = np.concatenate([np.zeros(0), *(one.compliance for one in self._constraints)])
         self._markers = Markers([one.markers for one in self._constraints], pose.position.shape[1])
@@ -99,12 +99,12 @@ class JointLinkage:
         """C, rates and compliances, where the ``motions`` are there."""
         bodies, kinematics = self._bodies(motions, time)
         rows = np.zeros((len(self._compliance), *flat(nothing(bodies)).shape))
-        rate, start = np.zeros(len(rows)), 0
-        for one, at in self._placed(bodies):
-            here = slice(start, start := start + len(one.compliance))
+        rate = np.zeros(len(rows))
+        for here, (one, at) in zip(self._rows_of_constraints, self._placed(bodies), strict=True):
             one.add_rows(at, rows[here])
             rate[here] = one.rate(time)
-        rate -= np.einsum("cni,ni->c", rows, self._prescribed_part(bodies, kinematics, time))
+        if self.driven:
+            rate -= np.einsum("cni,ni->c", rows, self._prescribed_part(bodies, kinematics, time))
         return Links(self._rows_on_motions(rows, kinematics), rate, self._compliance)
 
     def unloaded(self, motions: Pose) -> LinkLoad:
@@ -150,6 +150,8 @@ class JointLinkage:
 
     def spring_wrench(self, motions: Pose, time: float) -> Wrench:
         """Wrenches of the springs on the N motions."""
+        if not self._springs:
+            return nothing(motions)
         bodies, kinematics = self._bodies(motions, time)
         return kinematics.motion_wrench(self._wrench_on_bodies(bodies))
 
@@ -185,7 +187,7 @@ class JointLinkage:
         """Readings of all joints and then all ground links; ``bodies`` and ``twist`` are those of the n bodies,
         ``force`` (c,) that of the rows."""
         placed, readings = iter(self._markers.placed(bodies)), []
-        for part, rows in zip(self._parts, self._slices, strict=True):
+        for part, rows in zip(self._parts, self._rows_of_parts, strict=True):
             own = [next(placed) for _ in part.constraints]
             readings.append(part.reading(own, bodies, twist, time, force[rows]))
         return readings
@@ -276,6 +278,6 @@ def _norm(rows: FloatArray) -> float:
     return float(np.linalg.norm(rows.reshape(len(rows), -1), ord=2))
 
 
-def _slices(parts: Sequence[LinkParts]) -> tuple[slice, ...]:
-    ends = np.cumsum([0, *(part.rows for part in parts)]).tolist()
+def _slices(counts: Sequence[int]) -> tuple[slice, ...]:
+    ends = np.cumsum([0, *counts]).tolist()
     return tuple(slice(start, end) for start, end in pairwise(ends))

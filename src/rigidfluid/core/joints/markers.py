@@ -101,6 +101,7 @@ class Markers:
         self._point = np.array([one.point for one in markers]).reshape(-1, d)
         self._axes = np.array([one.axes for one in markers]).reshape(-1, d, d)
         self._start = np.array([one.start for one in markers])
+        self._latest: tuple[Pose, list[PlacedPair]] | None = None
 
     @property
     def reach(self) -> float:
@@ -108,7 +109,12 @@ class Markers:
         return float(np.linalg.norm(self._point, axis=1).max(initial=0.0))
 
     def placed(self, pose: Pose) -> list[PlacedPair]:
-        """Place all pairs, in their order, at the bodies' ``pose``."""
+        """Place all pairs, in their order, at the bodies' ``pose``; those at the latest pose are kept."""
+        if self._latest is None or self._latest[0] is not pose:
+            self._latest = pose, self._placed(pose)
+        return self._latest[1]
+
+    def _placed(self, pose: Pose) -> list[PlacedPair]:
         d = self._point.shape[1]
         rotation = np.concatenate([rotation_matrices(pose.orientation), np.eye(d)[None]])[self._body]
         centre = np.concatenate([pose.position, np.zeros((1, d))])[self._body]

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import copy
-from typing import NamedTuple, Self
+from functools import lru_cache
+from typing import Any, NamedTuple, Self
 
 import numpy as np
-from scipy import sparse
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.mechanics.matrices import assembled
 from rigidfluid.core.mechanics.own_motions import OwnMotions
 from rigidfluid.core.mechanics.rigid import angular_momentum, inverse_lab_inertia, is_isotropic
 from rigidfluid.core.model.kinematics import Kinematics
@@ -66,6 +67,7 @@ class DryDynamics(OwnMotions):
         self._free = ~prescribed[:, None]
         self._mass, self._inertia, self._weight = mass, inertia, weight
         self._prescribed_twist, self._time = prescribed_twist, 0.0
+        self._inverse_mass = np.asarray((self._free / mass[:, None])[:, :, None] * np.eye(pose.position.shape[1]))
         self._any_prescribed = bool(prescribed.any())
         self._velocity = twist.velocity.copy()
         self._round = is_isotropic(inertia)
@@ -86,13 +88,13 @@ class DryDynamics(OwnMotions):
 
     @property
     def inverse_mass(self) -> FloatArray:
-        return np.asarray((self._free / self._mass[:, None])[:, :, None] * np.eye(self._velocity.shape[1]))
+        return self._inverse_mass
 
     @property
     def inverse_inertia(self) -> FloatArray:
         return self._inverse_inertia() * self._free[:, :, None]
 
-    def inverse_masses(self, time: float) -> sparse.csr_matrix:
+    def inverse_masses(self, time: float) -> Any:
         """Matrix of 1/m and (R I Rᵀ)⁻¹, whatever the time."""
         return block_diagonal(self.inverse_mass, self.inverse_inertia)
 
@@ -182,15 +184,19 @@ class DryDynamics(OwnMotions):
         return inverse_lab_inertia(self._inertia, self.pose.orientation)
 
 
-def block_diagonal(linear: FloatArray, angular: FloatArray) -> sparse.csr_matrix:
-    """Matrix of all velocities, body by body, with blocks (n, d, d) and (n, k, k)."""
+def block_diagonal(linear: FloatArray, angular: FloatArray) -> Any:
+    """Matrix of all velocities, body by body, with blocks (n, d, d) and (n, k, k); sparse for many bodies."""
     count, d, k = len(linear), linear.shape[1], angular.shape[1]
-    rows, columns, values = [], [], []
-    for first, block in ((0, linear), (d, angular)):
-        size = block.shape[1]
+    entries = np.concatenate([linear.ravel(), angular.ravel()])
+    return assembled(entries, *_places(count, d, k), (count * (d + k),) * 2)
+
+
+@lru_cache(maxsize=4)
+def _places(count: int, d: int, k: int) -> tuple[IntArray, IntArray]:
+    """Rows and columns of the entries of all blocks (n, d, d) and then (n, k, k)."""
+    rows, columns = [], []
+    for first, size in ((0, d), (d, k)):
         start = (d + k) * np.arange(count)[:, None, None] + first
         rows.append((start + np.arange(size)[:, None] + np.zeros(size, dtype=int)).ravel())
         columns.append((start + np.zeros(size, dtype=int)[:, None] + np.arange(size)).ravel())
-        values.append(block.ravel())
-    places = np.concatenate(rows), np.concatenate(columns)
-    return sparse.csr_matrix((np.concatenate(values), places), shape=(count * (d + k),) * 2)
+    return np.concatenate(rows), np.concatenate(columns)

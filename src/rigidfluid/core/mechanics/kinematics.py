@@ -96,4 +96,4 @@ def jacobian(kinematics: CarriedKinematics) -> sparse.csr_matrix:
 def levers(arm: FloatArray) -> FloatArray:
     """Lever matrices X (n, d, k) with X ω = ω × arm, for arms (n, d) [length]."""
     k = 1 if arm.shape[1] == 2 else 3
-    return np.stack([cross(np.broadcast_to(axis, (len(arm), k)), arm) for axis in np.eye(k)], axis=-1)
+    return cross(np.eye(k)[:, None], arm).transpose(1, 2, 0)

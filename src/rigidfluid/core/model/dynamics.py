@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol, Self
-
-from scipy import sparse
+from typing import Any, Protocol, Self
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.model.kinematics import Kinematics
@@ -59,9 +57,9 @@ class BodyDynamics(Protocol):
     def inverse_inertia(self) -> FloatArray:
         """Inverse inertia (R I Rᵀ)⁻¹ (n, k, k), zero for prescribed bodies [1/(mass·length²)]."""
 
-    def inverse_masses(self, time: float) -> sparse.csr_matrix:
-        """Matrix M⁻¹ of all velocities (n·(d+k), n·(d+k)), zero for prescribed bodies: M⁻¹ W ``time`` is the change of
-        the velocities by a wrench W that lasts for ``time`` [1/mass | 1/(mass·length²)]."""
+    def inverse_masses(self, time: float) -> Any:
+        """Matrix M⁻¹ of all velocities (n·(d+k), n·(d+k)), an array or sparse, zero for prescribed bodies: M⁻¹ W
+        ``time`` is the change of the velocities by a wrench W that lasts for ``time`` [1/mass | 1/(mass·length²)]."""
 
     @property
     def friction_loss(self) -> float:

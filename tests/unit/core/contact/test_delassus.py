@@ -7,7 +7,9 @@ from mesh_tools import ball, box_walls, ellipsoid, upright
 from rigidfluid.core.contact.path.delassus import delassus
 from rigidfluid.core.coupling.coupled_dynamics import CoupledDynamics
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.mechanics import matrices
 from rigidfluid.core.mechanics.dynamics import DryDynamics
+from rigidfluid.core.mechanics.matrices import full
 from rigidfluid.core.mechanics.wrenches import contact_wrench, flat
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.reduced_model import Coupling, Evaluation, reduced_model
@@ -39,8 +41,11 @@ def gap_rates(contacts: Contacts, pose: Pose) -> FloatArray:
     return np.array(rows)
 
 
+@pytest.mark.parametrize("most_full", [0, 64])
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_free_bodies(dimension):
+def test_free_bodies(monkeypatch, dimension, most_full):
+    """With sparse matrices and with full ones."""
+    monkeypatch.setattr(matrices, "MOST_FULL", most_full)
     contacts, pose = scene(dimension)
     count, k = len(pose.position), turning(dimension)
     twist = Twist(np.zeros((count, dimension)), np.zeros((count, k)))
@@ -50,7 +55,7 @@ def test_free_bodies(dimension):
     inverse = np.concatenate([1.0 / mass[:, None] * np.ones(dimension), [[10.0] * k, [5.0] * k, [10 / 3] * k]], axis=1)
     inverse[driven] = 0.0
     rates = gap_rates(contacts, pose)
-    found = delassus(contacts, dynamics, 0.01).toarray()
+    found = full(delassus(contacts, dynamics, 0.01))
     np.testing.assert_allclose(found, rates @ np.diag(inverse.ravel()) @ rates.T, atol=1e-12)
     assert len(contacts) > count
 
@@ -76,7 +81,7 @@ def test_bodies_in_a_fluid_respond_to_each_other(dimension):
         pose, twist, np.zeros((count, dimension + k)), *blocks, Coupling(model, *np.zeros((3, size)))
     )
     rates, time = gap_rates(contacts, pose), 0.02
-    found = delassus(contacts, dynamics, time).toarray()
+    found = full(delassus(contacts, dynamics, time))
     np.testing.assert_allclose(found, found.T, atol=1e-10)
     force = np.arange(1.0, len(contacts) + 1.0)
     dynamics.kick(contacts_push(contacts, force, pose), time)

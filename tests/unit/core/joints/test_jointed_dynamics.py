@@ -9,6 +9,7 @@ from scipy.linalg import expm
 
 from rigidfluid.core.joints.damping import damper_impulse
 from rigidfluid.core.joints.jointed_dynamics import JointedDynamics
+from rigidfluid.core.mechanics import matrices
 from rigidfluid.core.mechanics.dynamics import DryDynamics
 from rigidfluid.core.mechanics.rigid import kinetic_energy
 from rigidfluid.core.mechanics.wrenches import flat, nothing
@@ -88,8 +89,11 @@ def test_a_double_pendulum_keeps_its_energy_to_second_order():
     assert all(0.24 < finer / coarser < 0.26 for coarser, finer in pairwise(errors))
 
 
+@pytest.mark.parametrize("most_full", [0, 64])
 @DIMENSIONS
-def test_what_contacts_are_told_of_linked_masses_is_what_kicks_do(dimension):
+def test_what_contacts_are_told_of_linked_masses_is_what_kicks_do(monkeypatch, dimension, most_full):
+    """With sparse matrices and with full ones."""
+    monkeypatch.setattr(matrices, "MOST_FULL", most_full)
     motion = chain(dimension)
     wrench = np.random.default_rng(4).normal(size=flat(motion.twist).shape)
     expected = flat(motion.twist).ravel() + 0.1 * motion.inverse_masses(0.1) @ wrench.ravel()

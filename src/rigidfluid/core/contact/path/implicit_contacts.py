@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
+from scipy import sparse
 
 from rigidfluid.core.contact.pairs.carried_springs import carried_springs, springs_at, transported, transported_turning
 from rigidfluid.core.contact.path.contact_load import evaluate_damping, wall_power
@@ -29,6 +30,7 @@ from rigidfluid.core.contact.path.substep import (
 )
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.wall import WallVelocities
+from rigidfluid.core.mechanics.matrices import full
 from rigidfluid.core.mechanics.wrenches import contact_wrench, nothing
 from rigidfluid.core.model.contacts import middle as centre
 from rigidfluid.core.model.contacts import normal_part, sides, tangential_part, turning_radius
@@ -227,7 +229,7 @@ def _evaluate(encounter: Encounter[M], wrench: Wrench, place: Kinematics) -> _It
 def _compliance(law: ForceLaw, contacts: Contacts, dynamics: BodyDynamics, size: float) -> Any:
     responses = delassus_of_turning if law.rolling else delassus_of_points if law.sticking else delassus
     matrix = 0.5 * size**2 * responses(contacts, dynamics, 0.5 * size)
-    return matrix.toarray() if len(contacts) <= MOST_DENSE else matrix
+    return full(matrix) if len(contacts) <= MOST_DENSE else sparse.csr_matrix(matrix)
 
 
 def _response(law: ForceLaw, iterate: _Iterate[M], rub: Rubbing, force: FloatArray, along: FloatArray) -> Condensed:

@@ -183,7 +183,10 @@ def contacts_of_mean_force(
     for _ in range(_HALVINGS):
         between = replace(middle, gap=0.5 * (near + far))
         weaker = middle.sign * (normal_part(law.force(between), between) - force) < 0.0
+        before = near, far
         near, far = np.where(weaker, near, between.gap), np.where(weaker, between.gap, far)
+        if np.array_equal((near, far), before):
+            break
     return replace(middle, gap=0.5 * (near + far))
 
 
@@ -237,9 +240,10 @@ def _blocks(entries: FloatArray, dense: bool) -> Any:
 def _directions(tangents: FloatArray, pulled: FloatArray, tried: FloatArray, also_ahead: BoolArray) -> FloatArray:
     """Derivative (m, c, c) along the ``tangents`` (m, c, c) of forces ``pulled`` by those ``tried``, which were
     shortened to them; those ``also_ahead`` (m, 1) are shortened by the same factor."""
-    ahead = _over(tried, _length(tried))
+    length = _length(tried)
+    ahead = _over(tried, length)
     sideways = tangents - np.where(also_ahead, 0.0, 1.0)[:, :, None] * ahead[:, :, None] * ahead[:, None, :]
-    part = np.where(_length(tried) > 0.0, _over(_length(pulled), _length(tried)), 1.0)
+    part = np.where(length > 0.0, _over(_length(pulled), length), 1.0)
     return np.asarray(part[:, :, None] * sideways)
 
 
