@@ -12,6 +12,7 @@ from rigidfluid.core.contact.laws.stiffness import contacts_on_the_way, greatest
 from rigidfluid.core.contact.path.delassus import delassus
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.wall import WallVelocities
+from rigidfluid.core.mechanics.matrices import full
 from rigidfluid.core.model.contacts import middle, normal_part, select, sides, turning_radius
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.force_law import ForceLaw
@@ -163,7 +164,7 @@ class _Push(NamedTuple):
 
 
 def _creep(contacts: Contacts, dynamics: BodyDynamics, reach: Reach, size: float) -> _Push:
-    rates = np.abs(size * delassus(contacts, dynamics, size).toarray())
+    rates = np.abs(size * full(delassus(contacts, dynamics, size)))
     gained = size * _pair_values(dynamics.max_acceleration(size), contacts).sum(axis=1)
     wandering = 1.0 + _pair_values(reach.rotational_factor, contacts).max(axis=1)
     return _Push(gained * _reciprocal(rates.diagonal()), rates * wandering)
