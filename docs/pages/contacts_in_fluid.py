@@ -100,8 +100,8 @@ water, with contacts that are ten to a thousand times shorter than a step; what 
 Aimed at are at most 3 % created, and 1 % with steps of 1 ms and less, and at most 30, 15, 7 and 4 % lost with steps of
 4, 2, 1 and .5 ms. Above that are: {over}.
 
-A step in which an impact would lose much is shortened, to 1/32 at most. In the squeezed channel both walls push
-the disk all the time.
+A step in which an impact would lose much is shortened, to 1/32 at most, and to 1/256 where contacts have created
+energy. In the squeezed channel both walls push the disk all the time.
 
 At most {created:.2f} % are created; over {rows} rows {created_mean:.3f} % are created in the mean, and
 {lost_mean:.2f} % lost. What is lost depends on the start: from seven, the second disk moved by .006 cm from each to the

@@ -100,9 +100,8 @@ in. Taken is what dashpots, friction and restitution took until the end, over th
 is that of the steps.
 
 Above {allowed} created are, of {runs} runs: {beyond}. Without friction two of the [extreme contacts](stability.md) come
-near it, both in implicit steps of 4 ms: a disk that two walls squeeze from the start creates .36 %, and one that is let
-fall a little way onto a very stiff contact .30 % ([how they came to
-that](../decisions/79-impacts-resolved-further.md)).
+nearest to it, both in implicit steps of 4 ms: a disk that two walls squeeze from the start, and one that is let fall a
+little way onto a very stiff contact ([why](../decisions/79-impacts-resolved-further.md)).
 
 Implicit steps balance to round-off without a fluid. What dashpots take in impacts shorter than a step depends on the
 step then, with `spring-dashpot` most.

@@ -19,8 +19,20 @@ def with_seeded_bodies(
 ) -> dict[str, Any]:
     """Tables of a scene with the bodies of its ``swarms`` after its own; each swarm avoids those before it.
 
-    Raises SceneError or PluginError for swarms that are wrong or find no room.
+    None lies across periodic surfaces where one of them all is longer than the periods. Raises SceneError or
+    PluginError for swarms that are wrong or find no room.
     """
+    tables, after = _seeded(data, swarms, seed_of_all, occupied)
+    longest = max((body.bounding_radius for body in after.others.bodies), default=0.0)
+    if 2.0 * longest >= occupied.lattice.shortest:
+        tables, _ = _seeded(data, swarms, seed_of_all, replace(occupied, lattice=occupied.domain.alone))
+    return tables
+
+
+def _seeded(
+    data: Mapping[str, Any], swarms: Sequence[SwarmTable], seed_of_all: int, occupied: Occupied
+) -> tuple[dict[str, Any], Occupied]:
+    """Tables with the bodies of all swarms, and what is occupied then."""
     bodies, tables = list(data.get("body", [])), []
     for number, table in enumerate(swarms):
         record = table.seeded
@@ -29,7 +41,7 @@ def with_seeded_bodies(
             bodies += found.tables
             record, occupied = found.record, replace(occupied, others=found.bodies)
         tables.append({**data["swarm"][number], "seeded": record.model_dump()})
-    return {**data, "body": bodies, "swarm": tables}
+    return {**data, "body": bodies, "swarm": tables}, occupied
 
 
 @contextmanager

@@ -176,7 +176,10 @@ class FluidBackend(Part):
 
     @gives(backends.insides)
     def insides(self, fluid: FluidState, mesh: Mesh, pose: Pose) -> InsideFields | None:
-        """The scalar inside the bodies that conduct it, for output; None where there are none."""
+        """The scalar inside the bodies that conduct it, for output; None where there are none.
+
+        All processes are asked, and what the root tells, of all bodies, is written.
+        """
         return None
 
     @abstractmethod

@@ -55,7 +55,7 @@ def seed(table: SwarmTable, at: str, draws: Draws, occupied: Occupied, grow: boo
     _check_table(table, at, domain.dimension)
     whole, region = DomainRegion(domain), region_of(table.region, domain, f"{at}.region", registry)
     if table.region is not None:
-        refuse_outside(region, whole, f"{at}.region", draws)
+        refuse_outside(region, whole, f"{at}.region")
     swarm, rows = swarm_of(table, at, domain.dimension, draws, registry), []
     if table.file is not None:
         rows = listed_bodies(table.file, f"{at}.file", domain.dimension)
@@ -81,15 +81,17 @@ def seed(table: SwarmTable, at: str, draws: Draws, occupied: Occupied, grow: boo
 
 
 def _surroundings(swarm: Swarm, region: Region, occupied: Occupied) -> Surroundings:
-    """The surroundings of a swarm: images where all bodies are shorter than the periods, else periodic surfaces."""
+    """The surroundings of a swarm: images where all bodies are shorter than the periods, else periodic surfaces. A
+    region holds all of each body, and so keeps it off these."""
     domain, lattice = occupied.domain, occupied.lattice
     longest = max(body.bounding_radius for body in (*swarm.bodies, *occupied.others.bodies))
     if 2.0 * longest + swarm.gap >= lattice.shortest:
         lattice = domain.alone
+    if swarm.table.region is not None:
+        return Surroundings(domain.pieces, tuple(region.surfaces), lattice, occupied.registry)
     crossed = {number for pair in domain.periodic for number in pair} if len(lattice.vectors) else set()
     pieces = tuple(piece for number, piece in enumerate(domain.pieces) if number not in crossed)
-    surfaces = () if swarm.table.region is None else tuple(region.surfaces)
-    return Surroundings(pieces, surfaces, lattice, occupied.registry)
+    return Surroundings(pieces, (), lattice, occupied.registry)
 
 
 def _overlap(at: str, place: FloatArray, gap: float) -> SceneError:

@@ -57,6 +57,37 @@ def test_gaps_are_kept_to_images_and_to_walls_alone(
     assert [across(scene, axis) > 0 for axis in range(dimension)] == [axis in axes for axis in range(dimension)]
 
 
+def test_a_region_that_overhangs_a_periodic_surface_keeps_bodies_off_it() -> None:
+    region = {"type": "box", "lower": [-0.5, 0.0], "upper": [0.5, 1.0]}
+    scene = seeded(2, DISK, number=8, gap=0.01, region=region, tables=periodic(0))
+    place, size = start(scene).position, radii(scene)
+    assert np.all((place[:, 0] > size) & (place[:, 0] < 0.5 - size))
+    assert scene.swarm[0].seeded is not None
+    assert scene.swarm[0].seeded.gap >= 0.01
+
+
+def test_a_later_swarm_that_is_too_long_to_cross_keeps_all_off_periodic_surfaces() -> None:
+    """A run has one lattice of images for all bodies."""
+    grains = {"name": "grain", "number": 15, "density": 1.0, "gap": 0.01, "shape": [{"type": "sphere", "radius": 0.04}]}
+    log = {"type": "ellipsoid", "semi_axes": [0.55, 0.05]}
+    logs = {"name": "log", "number": 1, "density": 1.0, "gap": 0.01, "angle": np.pi / 2, "shape": [log]}
+    scene = scene_from_dict(
+        {
+            "scene": {"name": "grains", "dimension": 2, "seed": 3},
+            "fluid": WET,
+            "domain": {"lower": [0.0, 0.0], "upper": [1.0, 2.0]},
+            "mesh": MESH,
+            "time": {"step": 0.01, "end": 0.01},
+            "output": {"every": 0.01},
+            "swarm": [grains, logs],
+            **periodic(0),
+        }
+    )
+    place = start(scene).position[:15, 0]
+    assert np.all((place > 0.04) & (place < 0.96))
+    Simulation(model_of(scene))
+
+
 def test_the_naive_detector_finds_no_smaller_gap_among_all_images() -> None:
     ellipse = {"type": "ellipsoid", "semi_axes": [0.16, 0.08]}
     scene = seeded(2, ellipse, fraction=0.6, gap=0.002, tables=periodic(0, 1))
