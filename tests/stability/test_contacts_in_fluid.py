@@ -270,6 +270,7 @@ def test_an_enclosed_pressure_has_no_mean_and_is_pinned_far_from_bodies():
     assert apart > 0.8
 
 
+@pytest.mark.nightly
 def test_a_disk_that_walls_squeeze_creates_little_energy_where_steps_hardly_resolve_its_swings() -> None:
     """A swing takes sixteen steps at first: without shorter ones .62 % are created."""
     refuse_imbalance(rigidfluid.run(stepped(scenes.squeezed(4.0 * MILLISECOND), "implicit")), created=5e-3)

@@ -188,6 +188,7 @@ def inner_edges_in_film(mesh, around):
 
 
 @pytest.mark.long
+@pytest.mark.nightly
 def test_two_balls_are_meshed_at_a_gap_of_a_twenty_thousandth_of_their_radius():
     lower, upper, sizes = np.full(3, -3.0), np.full(3, 3.0), Sizes(1.5, 0.4, 0.5, refinements=5)
     pose = upright([0, 0, -1.000025], [0, 0, 1.000025])
