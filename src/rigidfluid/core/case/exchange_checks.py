@@ -65,7 +65,7 @@ def _check_sink(table: SinkTable, at: str, model: Model) -> None:
         if table.gap is not None:
             raise SceneError(f"{at}.gap", "gap together with region", "gap with on", "Leave it out.")
         region = region_of(table.region, model.domain, f"{at}.region", model.registry)
-        refuse_outside(region, DomainRegion(model.domain), f"{at}.region")
+        refuse_outside(region, DomainRegion(model.domain), f"{at}.region", Draws(model.seed))
     elif table.on not in model.domain.names:
         raise SceneError(
             f"{at}.on", repr(table.on), f"a surface: {', '.join(model.domain.names)}", "Name one of these."

@@ -134,11 +134,10 @@ class Placement:
             raise SceneError(f"{self.swarm.at}.gap", found, allowed, "Make the gap or the bodies smaller.")
 
 
-def refuse_outside(region: Region, around: Region, at: str) -> None:
-    """Raise SceneError for a ``region`` that has no part in the one ``around``; what is drawn later does not depend on
-    this."""
+def refuse_outside(region: Region, around: Region, at: str, draws: Draws) -> None:
+    """Raise SceneError for a ``region`` that has no part in the one ``around``."""
     lower, upper = region.extent
-    points = lower + (upper - lower) * np.random.default_rng(0).random((_SAMPLES, len(lower)))
+    points = lower + (upper - lower) * draws.uniform(_SAMPLES, len(lower))
     if not around.contains(points[region.contains(points)]).any():
         found = f"a region from {lower.tolist()} to {upper.tolist()} outside the domain"
         low, high = (corner.tolist() for corner in around.extent)

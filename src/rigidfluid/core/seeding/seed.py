@@ -55,7 +55,7 @@ def seed(table: SwarmTable, at: str, draws: Draws, occupied: Occupied, grow: boo
     _check_table(table, at, domain.dimension)
     whole, region = DomainRegion(domain), region_of(table.region, domain, f"{at}.region", registry)
     if table.region is not None:
-        refuse_outside(region, whole, f"{at}.region")
+        refuse_outside(region, whole, f"{at}.region", draws)
     swarm, rows = swarm_of(table, at, domain.dimension, draws, registry), []
     if table.file is not None:
         rows = listed_bodies(table.file, f"{at}.file", domain.dimension)
