@@ -15,6 +15,7 @@ from rigidfluid.api import Simulation
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.mesh.generation.meshing import longest_edges
 from rigidfluid.core.model.types import Pose
 from rigidfluid.detectors.brute_force import BruteForceDetector
 
@@ -55,6 +56,15 @@ def test_gaps_are_kept_to_images_and_to_walls_alone(
     assert np.all((place >= 0.0) & (place < 1.0))
     assert gaps_to_images(scene, *axes).min() >= 0.002
     assert [across(scene, axis) > 0 for axis in range(dimension)] == [axis in axes for axis in range(dimension)]
+
+
+def test_a_short_arc_beside_a_periodic_surface_is_divided() -> None:
+    """Netgen leaves two arcs of .0303 whole, of a disk that lies across by .006, even where .019 is asked for."""
+    contact = {"law": "normal", "range": 0.015, "epsilon": 1e-5}
+    tables = periodic(0, 1) | {"fluid": WET, "mesh": {"size": 0.1, "size_body": 0.03}, "contact": contact}
+    scene = seeded(2, {**DISK, "radius": 0.08}, fraction=0.25, gap=0.02, tables=tables, seed=4)
+    mesh = Simulation(model_of(scene)).state.mesh
+    assert longest_edges(mesh, len(scene.body)).max() <= 0.03 * (1.0 + 1e-9)
 
 
 def test_a_region_that_overhangs_a_periodic_surface_keeps_bodies_off_it() -> None:

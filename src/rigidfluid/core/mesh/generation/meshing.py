@@ -17,12 +17,15 @@ from rigidfluid.core.mesh.generation.cad_of_body import cad_of_body
 from rigidfluid.core.mesh.generation.on_surfaces import put_on_surfaces
 from rigidfluid.core.mesh.generation.periodic import identify, on_periodic_surfaces, with_exact_images
 from rigidfluid.core.mesh.size.size_field import Sizes
-from rigidfluid.core.mesh.topology import REMEDY, check_mesh, orient
+from rigidfluid.core.mesh.topology import REMEDY, check_mesh, distinct_edges, orient
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.errors import MeshError, PluginError
 
 ATTEMPTS = 8
+
+_AT_POINTS = 2
+"""Further attempts, with points in the edges that are still too long."""
 
 ROUNDING = 1e-9
 """Relative excess over the longest edge allowed on a body that counts as rounding."""
@@ -65,7 +68,7 @@ def generate_mesh(fluid_domain: FluidDomain, sizes: Sizes, finer: Finer = ()) ->
     """
     bodies, domain = len(fluid_domain.bodies), fluid_domain.domain
     refuse_bodies_outside(fluid_domain.pose, domain)
-    asked = _size_to_ask(fluid_domain, sizes, finer)
+    asked, finer = _lengths_to_ask(fluid_domain, sizes, finer)
     mesh = put_back(orient(run_netgen(fluid_domain, sizes, asked, finer)), bodies, domain, curved=True)
     mesh = replace(mesh, points=points_on_bodies(mesh, fluid_domain))
     mesh = with_exact_images(mesh, bodies, domain)
@@ -74,22 +77,35 @@ def generate_mesh(fluid_domain: FluidDomain, sizes: Sizes, finer: Finer = ()) ->
     return mesh
 
 
-def _size_to_ask(fluid_domain: FluidDomain, sizes: Sizes, finer: Finer) -> FloatArray:
-    """The edge length on each body (n,) to ask Netgen for, so that its edges are at most size_body long [length].
+def _lengths_to_ask(fluid_domain: FluidDomain, sizes: Sizes, finer: Finer) -> tuple[FloatArray, Finer]:
+    """The edge length on each body (n,) to ask Netgen for, so that its edges are at most size_body long, and points
+    where they are to be ``finer`` [length].
 
-    Netgen makes some longer than asked. The surfaces show it, at a tenth of a whole mesh's cost.
+    Netgen makes some longer than asked. The surfaces show it, at a tenth of a whole mesh's cost. A short arc next to a
+    periodic surface may stay one edge, whatever is asked on the body, and is divided by a point in its middle.
     """
     size_body = sizes.size_body
     asked = np.full(len(fluid_domain.bodies), size_body)
-    for _ in range(ATTEMPTS):
+    for attempt in range(ATTEMPTS + _AT_POINTS):
         surfaces = run_netgen(fluid_domain, sizes, asked, finer, surfaces_alone=True)
         excess = longest_edges(surfaces, len(fluid_domain.bodies)) / size_body
         if np.all(excess <= 1.0 + ROUNDING):
-            return asked
-        asked = np.where(excess > 1.0 + ROUNDING, 0.95 * asked / np.maximum(excess, 1.0), asked)
+            return asked, finer
+        if attempt < ATTEMPTS - 1:
+            asked = np.where(excess > 1.0 + ROUNDING, 0.95 * asked / np.maximum(excess, 1.0), asked)
+        else:
+            finer = [*finer, *_in_long_edges(surfaces, len(fluid_domain.bodies), size_body)]
     worst = int(np.argmax(excess))
     found = f"a facet of length {excess[worst] * size_body:.4g}"
     raise MeshError(f"body.{worst}", found, f"at most size_body = {size_body:g}", REMEDY)
+
+
+def _in_long_edges(mesh: Mesh, bodies: int, longest: float) -> Finer:
+    """Middles of the edges on ``bodies`` that are longer than the ``longest`` [length], with half their length."""
+    ends = mesh.points[distinct_edges(mesh.facets[mesh.markers < bodies])]
+    length = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+    long = length > (1.0 + ROUNDING) * longest
+    return list(zip(ends[long].mean(axis=1), (0.5 * length[long]).tolist(), strict=True))
 
 
 def longest_edges(mesh: Mesh, count: int) -> FloatArray:
