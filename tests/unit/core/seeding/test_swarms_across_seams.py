@@ -12,12 +12,16 @@ from swarms import BALL, DISK, radii, seeded, start
 
 from rigidfluid import Scene
 from rigidfluid.api import Simulation
+from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.lattice import Lattice
 from rigidfluid.core.mesh.generation.meshing import longest_edges
 from rigidfluid.core.model.types import Pose
+from rigidfluid.core.seeding.clearance import Clearance, Surroundings
 from rigidfluid.detectors.brute_force import BruteForceDetector
+from rigidfluid.registry import Registry
 
 SIDES = (("left", "right"), ("bottom", "top"), ("back", "front"))
 MESH = {"size": 0.2, "size_body": 0.08}
@@ -56,6 +60,17 @@ def test_gaps_are_kept_to_images_and_to_walls_alone(
     assert np.all((place >= 0.0) & (place < 1.0))
     assert gaps_to_images(scene, *axes).min() >= 0.002
     assert [across(scene, axis) > 0 for axis in range(dimension)] == [axis in axes for axis in range(dimension)]
+
+
+def test_nearest_points_of_images_are_told_on_the_bodies_themselves() -> None:
+    disks = [Sphere(Sphere.Options(radius=0.03), 2)] * 2
+    around = Surroundings((), (), Lattice(np.array([[1.0, 0.0]]), np.zeros(2)), Registry.load())
+    pose = Pose(np.array([[0.05, 0.5], [0.97, 0.5]]), np.zeros((2, 1)))
+    found = Clearance(disks, 2, around).within(pose, 0.1)
+    assert found.gap == pytest.approx([0.02])
+    ends = {int(found.a[0]): found.point_a[0], int(found.b[0]): found.point_b[0]}
+    np.testing.assert_allclose(ends[0], [0.02, 0.5], atol=1e-12)
+    np.testing.assert_allclose(ends[1], [1.0, 0.5], atol=1e-12)
 
 
 def test_a_short_arc_beside_a_periodic_surface_is_divided() -> None:
