@@ -20,7 +20,7 @@ def scene_scalar(table: ScalarTable, domain: Domain, bodies: Sequence[str]) -> S
 
     Raises SceneError for a name that is none of theirs, and for invalid expressions.
     """
-    dimension, seams = domain.dimension, {number for pair in domain.periodic for number in pair}
+    dimension, seams = domain.dimension, domain.periodic_pieces
     names = [name for piece in domain.pieces for name in piece.all_names]
     raise_all(_wrong_names(table.boundary, "boundary", names))
     raise_all(_wrong_names(table.body, "body", bodies))

@@ -100,7 +100,7 @@ class FluidDomain:
     def gap_widths(self, points: FloatArray) -> FloatArray:
         """Distance to the nearest body and that to the next surface together, (N,) [length]."""
         first, second = self.two_nearest_bodies(points, np.inf)
-        periodic = [number for pair in self.domain.periodic for number in pair]
+        periodic = self.domain.periodic_pieces
         there = self.domain.wrapped(points)
         for number, piece in enumerate(self.domain.pieces):
             if number not in periodic:

@@ -76,6 +76,11 @@ class Domain(SpatialPart):
         `cad_shape`."""
         return None
 
+    @property
+    def periodic_pieces(self) -> frozenset[int]:
+        """Numbers of the pieces that are periodic."""
+        return frozenset(number for pair in self.periodic for number in pair)
+
     def with_periodic(self, pairs: tuple[tuple[int, int], ...]) -> Self:
         """The same domain with these ``pairs`` of periodic pieces."""
         other = copy(self)

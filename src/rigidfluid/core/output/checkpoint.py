@@ -37,7 +37,7 @@ columns; files of other formats are refused."""
 class Checkpoint:
     """Data with which a rank goes on with a run: its ``state`` and the backend's ``memory``, the ``scene`` as JSON, so
     the ``population``, who has entered and left, the digests of the ``files`` that it names, the ``times`` of its
-    outputs, the ``sizes`` (times, 4) of the files that the rank then wrote, 0 for none [byte], the ``tables`` as
+    outputs, the ``sizes`` (times, DATASETS) of the files that the rank then wrote, 0 for none [byte], the ``tables`` as
     far as they were written, what the run has cost, its ``extremes``, and how many ``ranks`` have such."""
 
     state: State

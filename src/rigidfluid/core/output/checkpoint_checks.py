@@ -12,6 +12,7 @@ import numpy as np
 from rigidfluid.core.model.state import State
 from rigidfluid.core.model.types import Mesh
 from rigidfluid.core.output.stored_records import Misfit
+from rigidfluid.core.output.vtu import DATASETS
 
 Shapes = Mapping[str, "str | Shapes"]
 """Shapes of a record's arrays by their names, a letter for each axis, and those of records in it."""
@@ -72,7 +73,7 @@ _STATE: Shapes = {
     },
 }
 
-_SHAPES: Shapes = {"state": _STATE, "extremes": {"highest_speed": "n"}, "sizes": "o4"}
+_SHAPES: Shapes = {"state": _STATE, "extremes": {"highest_speed": "n"}, "sizes": f"o{len(DATASETS)}"}
 
 _INFINITE = ("gaps", "smallest_gap", "since_start", "error", "with_contacts")
 _UNKNOWN = ("radius_a", "radius_b", "effective_radius", "curvatures", "load_before", "quality")

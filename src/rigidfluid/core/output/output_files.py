@@ -30,7 +30,7 @@ def present_files(out: Path, number: int) -> dict[str, str]:
 
 
 def written_sizes(out: Path, number: int, rank: int) -> IntArray:
-    """Bytes of the files of DATASETS (4,) that a ``rank`` has written at one output time, 0 of those it has not."""
+    """Bytes of the files (DATASETS,) that a ``rank`` has written at one output time, 0 of those it has not."""
     found = np.zeros(len(DATASETS), dtype=np.int64)
     for place, path in enumerate(_own_files(out, number, rank)):
         found[place] = path.stat().st_size if path.exists() else 0
@@ -38,7 +38,7 @@ def written_sizes(out: Path, number: int, rank: int) -> IntArray:
 
 
 def require_outputs(out: Path, sizes: IntArray, rank: int) -> None:
-    """Raise OutputError where files that a ``rank`` has written have other ``sizes`` (times, 4) now."""
+    """Raise OutputError where files that a ``rank`` has written have other ``sizes`` (times, DATASETS) now."""
     for number, row in enumerate(sizes.tolist()):
         for path, size in zip(_own_files(out, number, rank), row, strict=False):
             found = path.stat().st_size if path.is_file() else None

@@ -39,7 +39,7 @@ def _near_openings(system: System, state: State) -> list[tuple[float, str, str]]
     no contact."""
     passed = {wall.name for wall in system.walls}
     if len(system.lattice.vectors):
-        passed |= {system.domain.names[number] for pair in system.domain.periodic for number in pair}
+        passed |= {system.domain.names[number] for number in system.domain.periodic_pieces}
     openings = [piece for piece in system.meshed(state.pose).pieces if piece.name not in passed]
     found = []
     for number, body in enumerate(system.bodies):

@@ -89,7 +89,7 @@ def _surroundings(swarm: Swarm, region: Region, occupied: Occupied) -> Surroundi
         lattice = domain.alone
     if swarm.table.region is not None:
         return Surroundings(domain.pieces, tuple(region.surfaces), lattice, occupied.registry)
-    crossed = {number for pair in domain.periodic for number in pair} if len(lattice.vectors) else set()
+    crossed = domain.periodic_pieces if len(lattice.vectors) else frozenset()
     pieces = tuple(piece for number, piece in enumerate(domain.pieces) if number not in crossed)
     return Surroundings(pieces, (), lattice, occupied.registry)
 

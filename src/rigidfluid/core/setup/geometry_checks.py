@@ -72,8 +72,7 @@ def initial_contacts(placed: Arrangement, pose: Pose, reach: float) -> Contacts:
         return make(bodies, walls).detect(pose, None, reach)
     from rigidfluid.core.contact.pairs.image_detection import ImageDetection
 
-    crossed = {number for pair in placed.domain.periodic for number in pair}
-    solid = [wall for number, wall in enumerate(walls) if number not in crossed]
+    solid = [wall for number, wall in enumerate(walls) if number not in placed.domain.periodic_pieces]
     return ImageDetection(make, bodies, solid, placed.crossed).detect(pose, reach)
 
 

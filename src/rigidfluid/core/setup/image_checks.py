@@ -70,7 +70,7 @@ def check_lengths(bodies: Sequence[Body], lattice: Lattice, law_range: float) ->
 
 def _others(domain: Domain) -> list[int]:
     """Numbers of the pieces that are not periodic."""
-    return sorted(set(range(len(domain.pieces))) - {number for pair in domain.periodic for number in pair})
+    return sorted(set(range(len(domain.pieces))) - domain.periodic_pieces)
 
 
 def _has_right_angles(lattice: Lattice) -> bool:

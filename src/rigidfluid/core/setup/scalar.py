@@ -202,7 +202,7 @@ def _check_faces(model: Model, scalar: Scalar) -> None:
         if getattr(given, key) is not None:
             raise SceneError(f"{given.field}.{key}", getattr(given, key), "one of bodies alone", "Leave it out.")
     _check_surfaces(scalar.on_faces, [piece.name for piece in model.domain.pieces])
-    for number in (number for pair in model.domain.periodic for number in pair):
+    for number in sorted(model.domain.periodic_pieces):
         name = model.domain.names[number]
         if name in scalar.on_faces:
             found, remedy = f"{name!r}, which is periodic", "Leave the table out: what leaves there comes in again."

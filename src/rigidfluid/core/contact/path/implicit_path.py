@@ -86,8 +86,8 @@ def implicit_coupled(
         impulse = add_wrench(impulse, path.impulse, 1.0)
         lost, actuator_work, springs = lost + path.dissipated, actuator_work + path.actuator_work, path.springs
     path = arrived(dynamics, impulse, lost, actuator_work, IMPLICIT_PARTS)
-    path = replace(path, friction=dynamics.friction_loss, drag_left_out=dynamics.drag_left_out)
-    return replace(path, springs=springs)
+    friction, left_out = dynamics.friction_loss, dynamics.drag_left_out
+    return replace(path, friction=friction, drag_left_out=left_out, springs=springs)
 
 
 def _implicit_step(

@@ -16,8 +16,9 @@ from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation.cad_of_body import cad_of_body
 from rigidfluid.core.mesh.generation.on_surfaces import put_on_surfaces
 from rigidfluid.core.mesh.generation.periodic import identify, on_periodic_surfaces, with_exact_images
+from rigidfluid.core.mesh.generation.refine_surface import edges_of_facets
 from rigidfluid.core.mesh.size.size_field import Sizes
-from rigidfluid.core.mesh.topology import REMEDY, check_mesh, distinct_edges, orient
+from rigidfluid.core.mesh.topology import REMEDY, check_mesh, orient
 from rigidfluid.core.model.domain import Domain
 from rigidfluid.core.model.types import Mesh, Pose
 from rigidfluid.errors import MeshError, PluginError
@@ -102,7 +103,7 @@ def _lengths_to_ask(fluid_domain: FluidDomain, sizes: Sizes, finer: Finer) -> tu
 
 def _in_long_edges(mesh: Mesh, bodies: int, longest: float) -> Finer:
     """Middles of the edges on ``bodies`` that are longer than the ``longest`` [length], with half their length."""
-    ends = mesh.points[distinct_edges(mesh.facets[mesh.markers < bodies])]
+    ends = mesh.points[edges_of_facets(mesh, mesh.markers < bodies)[0]]
     length = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
     long = length > (1.0 + ROUNDING) * longest
     return list(zip(ends[long].mean(axis=1), (0.5 * length[long]).tolist(), strict=True))
@@ -192,7 +193,7 @@ def _netgen_failed(error: Exception) -> MeshError:
 def put_back(mesh: Mesh, bodies: int, domain: Domain, curved: bool) -> Mesh:
     """The mesh with the vertices on flat surfaces of the domain that are not periodic, or on all, exactly there; on all
     at once where several meet."""
-    periodic = [number for pair in domain.periodic for number in pair]
+    periodic = domain.periodic_pieces
     flat = [k for k, piece in enumerate(domain.pieces) if piece.shape.plane is not None and k not in periodic]
     chosen = list(range(len(domain.pieces))) if curved else flat
     belongs = np.zeros((len(mesh.points), len(chosen)), dtype=bool)

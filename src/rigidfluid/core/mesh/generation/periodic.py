@@ -79,4 +79,4 @@ def with_exact_images(mesh: Mesh, bodies: int, domain: Domain) -> Mesh:
 
 def on_periodic_surfaces(mesh: Mesh, bodies: int, domain: Domain) -> BoolArray:
     """Tell whether each facet is on a periodic surface, whose mesh stays that of its image, (F,)."""
-    return np.isin(mesh.markers - bodies, [piece for pair in domain.periodic for piece in pair])
+    return np.isin(mesh.markers - bodies, list(domain.periodic_pieces))
