@@ -18,7 +18,8 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there are no su
 @pytest.mark.long
 def test_a_killed_run_comes_to_the_same_results() -> None:
     trials = list(attack_by_kills(4, start=28))
-    assert len(trials) == 4
+    # On a machine whose speed varies, some runs end before their signal; others are started for them.
+    assert sum(trial.how != "ended first" for trial in trials) == 4
     assert [trial for trial in trials if not trial.held] == []
 
 
