@@ -24,7 +24,7 @@ from rigidfluid.core.mesh.adaptation.smooth_cut import smooth_cut
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation.curved_edges import with_curved_edges
 from rigidfluid.core.mesh.generation.meshing import generate_mesh
-from rigidfluid.core.mesh.generation.periodic import Seams
+from rigidfluid.core.mesh.generation.periodic import Seams, on_periodic_surfaces
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes
 from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_mesh
@@ -146,6 +146,15 @@ def test_seams_in_two_directions_find_room_between_many_bodies() -> None:
     mesh = initial_mesh(bodies, Sizes(0.3, 0.12))
     assert_whole(mesh, bodies)
     assert cell_quality(mesh.points, mesh.cells).min() > 0.3
+
+
+def test_seams_in_two_directions_find_room_off_narrow_gaps() -> None:
+    """No body lies across a seam. Where finer cells are needed to keep the seams out of narrow gaps, they are made."""
+    places = [[1.02, 0.81], [0.4, 0.81], [0.68, 0.45], [1.55, 0.44], [1.08, 0.17], [1.78, 0.66], [0.22, 0.52]]
+    bodies, sizes = around(*places, [1.31, 0.7], pairs=((0, 1), (2, 3))), Sizes(0.3, 0.12)
+    mesh = initial_mesh(bodies, sizes)
+    seam = mesh.facets[on_periodic_surfaces(mesh, 8, bodies.domain)]
+    assert bodies.placed_on(mesh).gap_widths(mesh.points[seam].mean(axis=1)).min() > RADIUS
 
 
 def test_a_seam_that_is_bad_next_to_a_body_is_given_up() -> None:

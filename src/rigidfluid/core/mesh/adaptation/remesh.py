@@ -100,7 +100,7 @@ def well_cut(mesh: Mesh, fluid_domain: FluidDomain, sizes: Sizes, winding: IntAr
         return kept
     must = crosses_bodies(mesh, len(fluid_domain.bodies), fluid_domain.domain)
     failures = []
-    for rounds, reach in product((0, MOST_ROUNDS) if must else (0,), (NEAR * sizes.size_body, 0.0)):
+    for reach, rounds in product((NEAR * sizes.size_body, 0.0), (0, MOST_ROUNDS)):
         try:
             return cut_around(mesh, fluid_domain, winding, reach, rounds)
         except MeshError as error:
