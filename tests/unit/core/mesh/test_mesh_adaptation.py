@@ -25,10 +25,16 @@ SHORT = {"time": {"step": 0.004, "end": 0.016}, "mesh": {"size": 0.3, "size_body
 
 @pytest.mark.parametrize(
     ("asked", "made", "worst", "anew"),
-    [(0.01, 0.5, 1.5 * TANGLED, True), (0.01, 0.5, 0.1, False), (0.25, 0.5, 0.2, True), (0.25, 0.3, 0.2, False)],
+    [
+        (0.01, 0.5, 1.5 * TANGLED, True),
+        (0.01, 0.5, 0.1, False),
+        (0.25, 0.5, 0.2, True),
+        (0.25, 0.3, 0.2, False),
+        (0.25, 1.5 * TANGLED, 0.9 * TANGLED, True),
+    ],
 )
 def test_quality(monkeypatch, asked, made, worst, anew):
-    """Below what is asked and half of what it was; a quality below that of tangled cells would ask too late."""
+    """Below what is asked and half of what it was, and always below that of tangled cells; a lower quality would ask too late."""
     still: Any = SimpleNamespace(move=lambda pose: None)
     monkeypatch.setattr(mesh_adaptation, "worst_quality", lambda *_: worst)
     monkeypatch.setattr(mesh_adaptation, "_gap_changed", lambda *arguments: np.array([False]))

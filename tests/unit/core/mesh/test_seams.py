@@ -56,7 +56,8 @@ def wavy(mesh: Mesh, seams: Seams) -> IntArray:
     centres = mesh.points[mesh.cells].mean(axis=1)
     border = 0.3 + 0.2 * np.sin(2.0 * np.pi * centres[:, [1, 0]])
     shift = (centres[:, :2] < border).astype(np.int64)
-    return smooth_cut(shift, neighbours(mesh, seams), np.zeros(len(mesh.cells), dtype=bool))
+    none = np.zeros(len(mesh.cells), dtype=bool)
+    return smooth_cut(shift, neighbours(mesh, seams), none, none)
 
 
 def periodic(posed: FluidProblem, drops: Mapping[int, float]) -> FluidProblem:
@@ -166,6 +167,21 @@ def test_a_seam_that_is_bad_next_to_a_body_is_given_up() -> None:
     cut = cut_around(mesh, near, np.zeros((1, 1), dtype=np.int64), 0.0)
     assert_whole(cut, near)
     assert not is_badly_cut(remesh(cut, near, SIZES), near, SIZES)
+
+
+@pytest.mark.parametrize("y", [0.2, 0.4, 0.6, 0.8])
+def test_a_bad_cell_has_no_facet_on_the_seam(y: float) -> None:
+    """Re-meshing could not change such a facet, and a flat cell between two of them would stay."""
+    bodies = around([1.83, 0.5])
+    mesh = generate_mesh(bodies, SIZES)
+    flat = int(np.argmin(np.linalg.norm(mesh.points[mesh.cells].mean(axis=1) - (0.83, y), axis=1)))
+    apex, *base = mesh.cells[flat]
+    points = mesh.points.copy()
+    points[apex] = 0.05 * points[apex] + 0.95 * points[base].mean(axis=0)
+    cut = cut_around(replace(mesh, points=points), bodies, np.zeros((1, 1), dtype=np.int64), 0.0)
+    seam = cut.facets[on_periodic_surfaces(cut, 1, bodies.domain)]
+    assert abs(cut.points[seam] - (0.83, y)).sum(axis=2).min() < 0.5
+    assert np.isin(seam, cut.cells[flat]).all(axis=1).sum() == 0
 
 
 def test_obstacles_on_the_other_side_of_the_seam_have_their_shape_and_size_there() -> None:

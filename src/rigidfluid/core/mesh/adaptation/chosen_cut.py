@@ -84,7 +84,8 @@ def cut_around(mesh: Mesh, fluid_domain: FluidDomain, winding: IntArray, reach: 
         if not len(conflicts):
             break
         mesh, wishes = _bisected(mesh, wishes, _edges_at_bodies(mesh, wishes, seams, conflicts))
-    made = recut(mesh, seams, smooth_cut(*_wanted(mesh, wishes, seams)))
+    bad = cell_quality(mesh.points, mesh.cells) < WELL_SHAPED
+    made = recut(mesh, seams, smooth_cut(*_wanted(mesh, wishes, seams), bad))
     return replace(made, periods=Periods(seams.ways, winding + fluid_domain.periods_outside() - together))
 
 

@@ -231,7 +231,8 @@ class MeshUpdater:
         if _is_astray(self.system, reference.mesh, pose):
             return True
         points, worst = self._placed(reference, pose)
-        if worst < min(max(self._renewal.quality, NEARLY_TANGLED), 0.5 * reference.quality):
+        lowest = min(max(self._renewal.quality, NEARLY_TANGLED), 0.5 * reference.quality)
+        if worst < max(lowest, TANGLED):
             return True
         if not is_due(reference.pose, state.pose, pose, sizes):
             return False

@@ -15,23 +15,33 @@ _SWEEPS = 20
 """Largest number of times that all cells at a seam are looked at."""
 
 
-def smooth_cut(shift: IntArray, pairs: Neighbours, held: BoolArray) -> IntArray:
+def smooth_cut(shift: IntArray, pairs: Neighbours, held: BoolArray, bad: BoolArray) -> IntArray:
     """The ``shift`` (M, k) of cells, changed for those that are not ``held`` (M,), so that no neighbours are apart in
     two directions, and no cell would have fewer facets on the seam with another shift.
 
     One direction comes after the other. Cells between which one seam already runs have one shift in the next direction.
+    ``bad`` cells (M,) have none of their facets on the seam if that can be, as re-meshing could not change those.
     Raises MeshError where the cells that are held want different ones.
     """
-    found, conflicts = find_cut(shift, pairs, held)
+    whole = (bad & ~held)[pairs.cells].any(axis=1)
+    try:
+        found, conflicts = find_cut(shift, pairs, held, whole)
+    except MeshError:
+        conflicts = np.flatnonzero(held)
+    if len(conflicts):
+        found, conflicts = find_cut(shift, pairs, held)
     if len(conflicts):
         raise MeshError("mesh", "bodies too near for a seam between them", "a cell between bodies", REMEDY)
     return found
 
 
-def find_cut(shift: IntArray, pairs: Neighbours, held: BoolArray) -> tuple[IntArray, IntArray]:
-    """The shift of `smooth_cut` (M, k), or the cells (C,) that are held and want different ones."""
+def find_cut(
+    shift: IntArray, pairs: Neighbours, held: BoolArray, together: BoolArray | None = None
+) -> tuple[IntArray, IntArray]:
+    """The shift of `smooth_cut` (M, k), one for neighbours that stay ``together`` (P,); or the cells (C,) that are held
+    and want different ones."""
     found = shift.copy()
-    apart = np.zeros(len(pairs.cells), dtype=bool)
+    apart = np.zeros(len(pairs.cells), dtype=bool) if together is None else together
     for axis in range(shift.shape[1]):
         groups = _Groups(pairs, apart, axis, len(shift))
         conflicts = groups.conflicts(shift[:, axis], held)
@@ -39,7 +49,7 @@ def find_cut(shift: IntArray, pairs: Neighbours, held: BoolArray) -> tuple[IntAr
             return found, conflicts
         found[:, axis] = groups.smoothed(shift[:, axis], held)
         one, other = found[pairs.cells.T, axis]
-        apart |= pairs.apart[:, axis] + one != other
+        apart = apart | (pairs.apart[:, axis] + one != other)
     return found, np.zeros(0, dtype=np.int64)
 
 
