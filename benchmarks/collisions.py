@@ -17,7 +17,7 @@ from mesh_sizes import mesh_sizes
 from row_command import at_least, row_parser, show_rows
 
 from rigidfluid.core.mechanics.wrenches import contact_wrench
-from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.part import PartOptions

@@ -18,7 +18,7 @@ from grids import RANGE, balls_in_a_box
 from mesh_sizes import mesh_sizes
 from mpi4py import MPI
 
-from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.distribution import distributed
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.model.ranks import MpiRanks

@@ -10,7 +10,7 @@ import numpy as np
 from mesh_tools import ball, ellipsoid
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.model.part import PartOptions

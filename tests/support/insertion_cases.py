@@ -16,7 +16,7 @@ from rigidfluid.bodies.sphere import Sphere
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.geometry.facets import Facets, area_vectors
 from rigidfluid.core.mechanics.frames import distance_to_body
-from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation.inserter import Inserter, Way
 from rigidfluid.core.mesh.generation.meshing import EdgeLengths, netgen_mesh

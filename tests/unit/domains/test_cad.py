@@ -10,7 +10,7 @@ import pytest
 from drawn import ball_in_a_box, bent_tube, drawn, plate, written
 from mesh_tools import ball, upright
 
-from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.mesh.topology import check_mesh

@@ -17,7 +17,7 @@ from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.case.schema import json_schema
 from rigidfluid.core.case.system import build_system
 from rigidfluid.core.geometry.facets import Facets
-from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation.meshing import generate_mesh
 from rigidfluid.core.mesh.mesh_quality import cell_volumes

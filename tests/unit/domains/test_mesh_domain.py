@@ -14,7 +14,7 @@ from mesh_tools import ball, nobody, upright
 from scipy.spatial import Delaunay
 
 from rigidfluid.core.geometry.facets import area_vectors
-from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation.meshing import generate_mesh
 from rigidfluid.core.mesh.mesh_quality import cell_volumes

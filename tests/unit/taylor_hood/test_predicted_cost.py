@@ -96,7 +96,8 @@ import sys
 from pathlib import Path
 import mmgpy
 from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
-from rigidfluid.core.mesh.adaptation.remesh import inserted_mesh, remesh
+from rigidfluid.core.mesh.adaptation.first_mesh import inserted_mesh
+from rigidfluid.core.mesh.adaptation.remesh import remesh
 from rigidfluid.core.run.mesh_keys import inserter_of, sizes_of
 from rigidfluid.core.case.system import build_system
 from rigidfluid.core.case.load import load_scene

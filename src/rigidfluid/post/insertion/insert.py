@@ -9,7 +9,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from rigidfluid.core.case.scene_model import Case, model_of
-from rigidfluid.core.mesh.adaptation.remesh import inserted_mesh, remesh
+from rigidfluid.core.mesh.adaptation.first_mesh import inserted_mesh
+from rigidfluid.core.mesh.adaptation.remesh import remesh
 from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
 from rigidfluid.core.mesh.size.size_interface import with_fields_at_rest
 from rigidfluid.core.model.system import System

@@ -12,7 +12,7 @@ from rigidfluid.core.fluid.conditions import NoSlip, PrescribedPressure, Prescri
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.fluid.material import Newtonian
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.model.types import Mesh, Pose

@@ -198,8 +198,8 @@ def _bent_seam(dimension: int) -> Mesh:
     centres = mesh.points[mesh.cells].mean(axis=1)
     shift = np.zeros((len(mesh.cells), len(axes)), dtype=np.int64)
     shift[:, 0] = centres[:, 0] < 0.3 + 0.3 * np.sin(2.0 * np.pi * centres[:, 1])
-    free = np.zeros(len(mesh.cells), dtype=bool)
-    return recut(mesh, seams, smooth_cut(shift, neighbours(mesh, seams), free))
+    none = np.zeros(len(mesh.cells), dtype=bool)
+    return recut(mesh, seams, smooth_cut(shift, neighbours(mesh, seams), none, none))
 
 
 def _twice(dimension: int) -> Mesh:

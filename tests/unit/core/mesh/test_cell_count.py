@@ -8,7 +8,7 @@ from falling import SCENES, falling_disk
 
 from rigidfluid.core.case.load import load_scene, scene_from_dict
 from rigidfluid.core.case.system import build_system
-from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
 from rigidfluid.core.mesh.generation.cell_count import Count, expected_count
 from rigidfluid.core.run.mesh_keys import inserter_of, sizes_of

@@ -9,9 +9,10 @@ from threaded_ranks import on_ranks
 
 from rigidfluid.core.mesh.adaptation import remesh as module
 from rigidfluid.core.mesh.adaptation.coarsening import MOST_COARSENED, has_coarsened, is_due, relative_sizes
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.adaptation.mesh_adaptation import reference_of
 from rigidfluid.core.mesh.adaptation.mesh_motion import MeshMotion
-from rigidfluid.core.mesh.adaptation.remesh import initial_mesh, remesh
+from rigidfluid.core.mesh.adaptation.remesh import remesh
 from rigidfluid.core.mesh.distribution import distributed
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_sizes

@@ -11,7 +11,7 @@ from wedge import wedge
 
 from rigidfluid.core.geometry.facets import Facets, enclosed_volume
 from rigidfluid.core.mechanics.frames import distance_to_body
-from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation import fill
 from rigidfluid.core.mesh.generation.fill import fill_mesh

@@ -9,8 +9,9 @@ import pytest
 from mesh_tools import ball, box, box_walls, upright
 
 from rigidfluid.core.mesh.adaptation import remesh as module
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.adaptation.kept_cells import LAYERS, kept_cells
-from rigidfluid.core.mesh.adaptation.remesh import initial_mesh, remesh
+from rigidfluid.core.mesh.adaptation.remesh import remesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.size.size_field import Sizes, wanted_size
 

@@ -7,8 +7,8 @@ from mesh_tools import ball, ellipsoid, nobody, upright
 
 from rigidfluid.core.mechanics.frames import distance_to_body
 from rigidfluid.core.mesh.adaptation import level_set
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.adaptation.level_set import level_set_mesh
-from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation.inserter import Inserter
 from rigidfluid.core.mesh.generation.surface_mesh import surface_mesh

@@ -34,7 +34,7 @@ SHORT = {"time": {"step": 0.004, "end": 0.016}, "mesh": {"size": 0.3, "size_body
     ],
 )
 def test_quality(monkeypatch, asked, made, worst, anew):
-    """Below what is asked and half of what it was, and always below that of tangled cells; a lower quality would ask too late."""
+    """Below what is asked and half of what it was, and below that of tangled cells, since others would ask too late."""
     still: Any = SimpleNamespace(move=lambda pose: None)
     monkeypatch.setattr(mesh_adaptation, "worst_quality", lambda *_: worst)
     monkeypatch.setattr(mesh_adaptation, "_gap_changed", lambda *arguments: np.array([False]))

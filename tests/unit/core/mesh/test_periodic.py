@@ -18,8 +18,9 @@ from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.case.scene_model import model_of
 from rigidfluid.core.case.system import build_system
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.adaptation.mesh_motion import MeshMotion
-from rigidfluid.core.mesh.adaptation.remesh import initial_mesh, remesh
+from rigidfluid.core.mesh.adaptation.remesh import remesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation.inserter import Inserter
 from rigidfluid.core.mesh.generation.periodic import with_exact_images

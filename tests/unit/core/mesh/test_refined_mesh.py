@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from mesh_tools import ball, upright
 
-from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation.curved_edges import with_curved_edges
 from rigidfluid.core.mesh.generation.refined_mesh import refined_mesh

@@ -5,7 +5,7 @@ from falling import falling_disk
 from mesh_tools import ball, box, box_walls, upright
 
 from rigidfluid.checks import check
-from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.size.regions import RefinedBox, RefinedCapsule, curved_walls
 from rigidfluid.core.mesh.size.size_field import LONGEST, Sizes, wanted_size

@@ -18,10 +18,11 @@ from mesh_tools import (
 )
 
 from rigidfluid.core.mesh.adaptation import remesh as module
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.adaptation.kept_cells import LAYERS
 from rigidfluid.core.mesh.adaptation.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.adaptation.mmg import without_unused
-from rigidfluid.core.mesh.adaptation.remesh import initial_mesh, remesh
+from rigidfluid.core.mesh.adaptation.remesh import remesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation import refine_surface as surface
 from rigidfluid.core.mesh.generation.meshing import generate_mesh

@@ -15,8 +15,9 @@ from mesh_tools import ball, nobody, upright
 
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.geometry.surface import Plane
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.adaptation.mesh_motion import MeshMotion
-from rigidfluid.core.mesh.adaptation.remesh import initial_mesh, remesh
+from rigidfluid.core.mesh.adaptation.remesh import remesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation.inserter import Inserter, Way
 from rigidfluid.core.mesh.generation.meshing import generate_mesh

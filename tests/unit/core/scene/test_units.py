@@ -15,7 +15,7 @@ from other_units import Table, Units, in_units
 from rigidfluid.bodies.sphere import Sphere, SphereOptions
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation.inserter import Inserter
 from rigidfluid.core.mesh.size.size_field import Sizes

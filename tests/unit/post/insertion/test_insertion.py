@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 
 from rigidfluid.cli import app
 from rigidfluid.core.case.load import scene_from_dict
-from rigidfluid.core.mesh.adaptation.remesh import initial_mesh
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
 from rigidfluid.core.mesh.size.size_field import Sizes

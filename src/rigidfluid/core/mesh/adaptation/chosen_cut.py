@@ -29,6 +29,12 @@ from rigidfluid.errors import MeshError
 WELL_SHAPED = 0.3
 """Least quality of cells at the seam with which the mesh is not cut open elsewhere."""
 
+MOST_ROUNDS = 3
+"""Most often that edges at bodies are bisected to make room for seams in several directions."""
+
+NEAR = 4.0
+"""Bodies with a gap of at most so many of the cells on them have no seam between them, if that can be."""
+
 _FARTHEST = 3
 """Largest number of periods along each way by which a cell is displaced."""
 
@@ -56,6 +62,27 @@ def crosses_bodies(mesh: Mesh, bodies: int, domain: Domain) -> bool:
     """Tell whether the seam crosses one of so many bodies."""
     seam = on_periodic_surfaces(mesh, bodies, domain)
     return bool(np.isin(mesh.facets[mesh.markers < bodies], mesh.facets[seam]).any())
+
+
+def well_cut(mesh: Mesh, fluid_domain: FluidDomain, sizes: Sizes, winding: IntArray) -> Mesh:
+    """The periodic mesh, cut open elsewhere if it is badly cut and can be.
+
+    The bodies are so many periods ahead of the poses of ``fluid_domain``, ``winding`` (n, k). Raises MeshError where
+    the seam crosses bodies and there is no better one.
+    """
+    kept = replace(mesh, periods=Periods(fluid_domain.domain.lattice, winding))
+    if not is_badly_cut(mesh, fluid_domain, sizes):
+        return kept
+    must = crosses_bodies(mesh, len(fluid_domain.bodies), fluid_domain.domain)
+    failures = []
+    for reach, rounds in product((NEAR * sizes.size_body, 0.0), (0, MOST_ROUNDS)):
+        try:
+            return cut_around(mesh, fluid_domain, winding, reach, rounds)
+        except MeshError as error:
+            failures.append(error)
+    if must:
+        raise failures[0]
+    return kept
 
 
 class _Link(NamedTuple):

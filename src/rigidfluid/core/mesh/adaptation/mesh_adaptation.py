@@ -13,11 +13,13 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.value_types import describe
+from rigidfluid.core.mesh.adaptation.chosen_cut import well_cut
 from rigidfluid.core.mesh.adaptation.coarsening import has_coarsened, is_due, relative_sizes
 from rigidfluid.core.mesh.adaptation.crossing import refuse_to_cross
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.adaptation.kept_cells import LAYERS
 from rigidfluid.core.mesh.adaptation.mesh_motion import MeshMotion
-from rigidfluid.core.mesh.adaptation.remesh import initial_mesh, remesh, well_cut
+from rigidfluid.core.mesh.adaptation.remesh import remesh
 from rigidfluid.core.mesh.distribution import distributed, whole
 from rigidfluid.core.mesh.flow import Flow, flow_on
 from rigidfluid.core.mesh.fluid_domain import FluidDomain, fluid_domain_at

@@ -5,32 +5,26 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.geometry.mesher_unit import mesher_unit, significant
-from rigidfluid.core.mesh.adaptation.chosen_cut import crosses_bodies, cut_around, is_badly_cut
 from rigidfluid.core.mesh.adaptation.kept_cells import kept_cells
-from rigidfluid.core.mesh.adaptation.level_set import level_set_mesh
 from rigidfluid.core.mesh.adaptation.mmg import Kept, run_mmg, with_kept_facets
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
-from rigidfluid.core.mesh.generation.fill import fill_mesh
-from rigidfluid.core.mesh.generation.inserter import BY_SHAPE, Inserter
-from rigidfluid.core.mesh.generation.meshing import generate_mesh, put_back
+from rigidfluid.core.mesh.generation.meshing import put_back
 from rigidfluid.core.mesh.generation.refine_films import refine_films
 from rigidfluid.core.mesh.generation.refine_surface import (
     long_edges,
-    long_seam_edges,
     on_kept_surfaces,
     refine_surface,
 )
 from rigidfluid.core.mesh.mesh_quality import cell_quality, cell_volumes, edge_lengths
 from rigidfluid.core.mesh.size.size_field import LONGEST, Sizes, wanted_size
 from rigidfluid.core.mesh.topology import REMEDY, check_mesh, check_volume, distinct_edges, orient
-from rigidfluid.core.model.types import Mesh, Periods
+from rigidfluid.core.model.types import Mesh
 from rigidfluid.errors import MeshError
 
 GRADATIONS = (1.3, 1.4, 1.2)
@@ -46,13 +40,6 @@ WEDGED = 2.0
 FLAT_IN_FILM = 1.0
 """A cell must be flat where the gap is at most so wide beside its longest edge."""
 
-BISECTABLE = 4.0
-"""Kept edges at most this many times longer than wanted are left to bisection; longer ones may cut through the gap."""
-
-GENERATIONS = 8
-"""Largest number of times that the first mesh is generated, each time finer where an edge is too long for the gap it
-faces."""
-
 ROUNDS = 4
 """Largest number of times that cells are improved around edges that could not be bisected."""
 
@@ -61,71 +48,6 @@ WORST_QUALITY = 0.02
 
 LONGEST_EDGE = 2.5
 """A re-made mesh with an edge longer than this many times the wanted size is refused: MMG has done nothing."""
-
-
-MOST_ROUNDS = 3
-"""Most often that edges at bodies are bisected to make room for seams in several directions."""
-
-NEAR = 4.0
-"""Bodies with a gap of at most so many of the cells on them have no seam between them, if that can be."""
-
-
-def initial_mesh(
-    fluid_domain: FluidDomain,
-    sizes: Sizes,
-    inserter: Inserter = BY_SHAPE,
-) -> Mesh:
-    """First mesh of a scene: made in the ``inserter``'s way, then graded by the wanted size like every later one.
-
-    Markers are surface numbers, as in :func:`~rigidfluid.core.mesh.generation.meshing.generate_mesh`. Raises MeshError
-    where no valid mesh can be made.
-    """
-    if not fluid_domain.domain.periodic:
-        return remesh(inserted_mesh(fluid_domain, sizes, inserter), fluid_domain, sizes)
-    winding = fluid_domain.periods_outside()
-    position = fluid_domain.pose.position - winding @ fluid_domain.domain.lattice
-    inside = replace(fluid_domain, pose=replace(fluid_domain.pose, position=position))
-    inserted = well_cut(inserted_mesh(inside, sizes, inserter), inside, sizes, winding)
-    return remesh(inserted, fluid_domain.placed_on(inserted), sizes)
-
-
-def well_cut(mesh: Mesh, fluid_domain: FluidDomain, sizes: Sizes, winding: IntArray) -> Mesh:
-    """The periodic mesh, cut open elsewhere if it is badly cut and can be.
-
-    The bodies are so many periods ahead of the poses of ``fluid_domain``, ``winding`` (n, k). Raises MeshError where
-    the seam crosses bodies and there is no better one.
-    """
-    kept = replace(mesh, periods=Periods(fluid_domain.domain.lattice, winding))
-    if not is_badly_cut(mesh, fluid_domain, sizes):
-        return kept
-    must = crosses_bodies(mesh, len(fluid_domain.bodies), fluid_domain.domain)
-    failures = []
-    for reach, rounds in product((NEAR * sizes.size_body, 0.0), (0, MOST_ROUNDS)):
-        try:
-            return cut_around(mesh, fluid_domain, winding, reach, rounds)
-        except MeshError as error:
-            failures.append(error)
-    if must:
-        raise failures[0]
-    return kept
-
-
-def inserted_mesh(fluid_domain: FluidDomain, sizes: Sizes, inserter: Inserter) -> Mesh:
-    """The first mesh before it is graded; as for `initial_mesh`."""
-    way = inserter.chosen(fluid_domain.bodies, fluid_domain.domain)
-    if way != "cad":
-        insert = fill_mesh if way == "fill" else level_set_mesh
-        return insert(fluid_domain, sizes, inserter.timeout)
-    finer: list[tuple[FloatArray, float]] = []
-    for _ in range(GENERATIONS):
-        mesh = generate_mesh(fluid_domain, sizes, finer)
-        _, *on_bodies = long_edges(mesh, fluid_domain, sizes, BISECTABLE)
-        on_seams = long_seam_edges(mesh, fluid_domain, sizes, LONGEST_EDGE)
-        points, wanted = (np.concatenate(both) for both in zip(on_bodies, on_seams, strict=True))
-        if not len(points):
-            break
-        finer += zip(points, wanted, strict=True)
-    return mesh
 
 
 def remesh(

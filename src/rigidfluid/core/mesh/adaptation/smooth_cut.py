@@ -23,7 +23,7 @@ def smooth_cut(shift: IntArray, pairs: Neighbours, held: BoolArray, bad: BoolArr
     ``bad`` cells (M,) have none of their facets on the seam if that can be, as re-meshing could not change those.
     Raises MeshError where the cells that are held want different ones.
     """
-    whole = (bad & ~held)[pairs.cells].any(axis=1)
+    whole = np.asarray((bad & ~held)[pairs.cells].any(axis=1))
     try:
         found, conflicts = find_cut(shift, pairs, held, whole)
     except MeshError:
