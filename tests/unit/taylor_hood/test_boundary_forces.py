@@ -126,7 +126,7 @@ def test_forces_on_curved_walls_converge(inner: type[Any]) -> None:
 
 
 def test_walls_that_meet_in_a_flow_with_errors_hold_all_of_its_force() -> None:
-    """A lid that slides in a cavity with a slippery floor, which feels nothing along itself: all forces add up to zero."""
+    """A lid slides in a cavity with a slippery floor, which feels nothing along itself: forces add up to zero."""
 
     def sliding(_time: float, at: FloatArray) -> FloatArray:
         return np.column_stack([at[:, 0] * (1.0 - at[:, 0]), np.zeros(len(at))])
