@@ -13,7 +13,7 @@ from curved_channels import VISCOSITY as BEND_VISCOSITY
 from sheared_materials import materials
 
 from rigidfluid.backends.scikit_fem import ScikitFem
-from rigidfluid.core.fluid.conditions import NoSlip, PrescribedPressure, PrescribedVelocity, Slip
+from rigidfluid.core.fluid.conditions import NoSlip, Periodic, PrescribedPressure, PrescribedVelocity, Slip
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.fluid.material import Newtonian
 from rigidfluid.core.geometry.arrays import FloatArray
@@ -136,3 +136,27 @@ def test_walls_that_meet_in_a_flow_with_errors_hold_all_of_its_force() -> None:
     np.testing.assert_allclose(found.sum(axis=0), 0.0, atol=1e-10)
     assert abs(found[2, 0]) < 1e-10
     assert found[3, 0] < -0.5
+
+
+def test_walls_of_a_periodic_duct_hold_the_drop_of_pressure() -> None:
+    """Its edges go on through the ends: what nodes there and their images have is one force."""
+    posed = problem(3, inertia=False)
+    first, second, *walls = posed.conditions
+    ends = (
+        Periodic(0, first.name, first.normal, 1, lambda _, at: np.full(len(at), PUSH)),
+        Periodic(1, second.name, second.normal),
+    )
+    found = forces_of(replace(posed, conditions=(*ends, *walls)), box(3, 4))
+    np.testing.assert_array_equal(found.force[:2], 0.0)
+    np.testing.assert_array_equal(found.area[:2], 0.0)
+    np.testing.assert_allclose(found.force.sum(axis=0), [PUSH, 0.0, 0.0], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(found.force[2:, 0], 0.25 * PUSH, rtol=0.02)
+
+
+def test_a_part_of_the_mesh_may_have_no_facet_of_a_piece() -> None:
+    """As with several processes: the piece then has nothing here."""
+    mesh = box(2, 2)
+    found = forces_of(problem(2, inertia=False), mesh)
+    without = replace(mesh, facets=mesh.facets[mesh.markers != 3], markers=mesh.markers[mesh.markers != 3])
+    assert found.area[3] == pytest.approx(1.0)
+    assert forces_of(problem(2, inertia=False), without).area[3] == 0.0

@@ -64,7 +64,7 @@ def boundary_forces(flow: BoundaryFlow) -> BoundaryForces:
     Returns
     -------
     BoundaryForces
-        Zero on periodic pieces. The sum over all pieces and bodies is that of all f: what momentum the fluid loses.
+        Zero on periodic pieces. The sum over all pieces and bodies is that of all f: the momentum that the fluid loses.
 
     Notes
     -----
@@ -107,7 +107,7 @@ def _shares(sides: list[_Side], is_shared: BoolArray, flow: BoundaryFlow) -> Flo
     inverse = np.linalg.pinv(taken.sum(axis=0), rcond=_ONE_DIRECTION, hermitian=True)
     shares = np.einsum("wsij,sjk,sk->wsi", taken, inverse, missing)
     there = np.asarray(taken.any(axis=(2, 3)))[:, :, None]
-    shares += there / there.sum(axis=0) * (missing - shares.sum(axis=0))
+    shares += there / np.maximum(there.sum(axis=0), 1) * (missing - shares.sum(axis=0))
     return np.asarray((direct + shares).sum(axis=1))
 
 
