@@ -56,6 +56,7 @@ class SparseBackend(TaylorHoodBackend):
     exchanges_bodies: ClassVar[bool] = True
     held_fluxes: ClassVar[bool] = True
     stresslets: ClassVar[bool] = True
+    boundary_forces: ClassVar[bool] = True
     cell_errors: ClassVar[bool] = True
     tangents: ClassVar[bool] = True
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rigidfluid.testing.fluid.accuracy import AccuracyContract
 from rigidfluid.testing.fluid.balances import BalancesContract
+from rigidfluid.testing.fluid.boundary_forces import BoundaryForcesContract
 from rigidfluid.testing.fluid.carried import CarriedContract
 from rigidfluid.testing.fluid.curved import CurvedContract
 from rigidfluid.testing.fluid.cylinder import CylinderContract
@@ -24,6 +25,7 @@ from rigidfluid.testing.fluid.varying_viscosity import VaryingViscosityContract
 class FluidBackendContract(
     AccuracyContract,
     BalancesContract,
+    BoundaryForcesContract,
     CarriedContract,
     CurvedContract,
     CylinderContract,

@@ -14,7 +14,8 @@ from rigidfluid.testing import FluidBackendContract
 
 
 class Modest(ScikitFem):
-    exchanges_bodies = held_fluxes = stresslets = initial_flows = oblique_faces = periodic_faces = False
+    exchanges_bodies = held_fluxes = stresslets = boundary_forces = initial_flows = False
+    oblique_faces = periodic_faces = False
 
 
 class TestModest(FluidBackendContract):

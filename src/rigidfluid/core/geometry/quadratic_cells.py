@@ -35,7 +35,7 @@ def _along_slopes(values: FloatArray) -> FloatArray:
     cells, nodes, components = values.shape
     slopes = _slopes(2 if nodes == 6 else 3)
     by_node = slopes.transpose(1, 0, 2).reshape(nodes, -1)  # one product of matrices
-    found = (np.swapaxes(values, 1, 2).reshape(-1, nodes) @ by_node).reshape(cells, components, nodes, -1)
+    found = (np.swapaxes(values, 1, 2).reshape(-1, nodes) @ by_node).reshape(cells, components, nodes, slopes.shape[2])
     return np.asarray(np.swapaxes(found, 1, 2))
 
 

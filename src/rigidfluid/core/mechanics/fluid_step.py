@@ -51,6 +51,7 @@ def step_to(system: System, state: State, end: StepEnd, points: FloatArray | Non
         kinematics=kinematics,
         links=system.solved_joints.links(pose, time),
         stresslets=system.stresslets,
+        boundary_forces=system.boundary_forces,
         cell_errors=system.cell_errors,
     )
 

@@ -10,6 +10,7 @@ import numpy as np
 from rigidfluid.core.geometry.answers import refuse_no_number, refuse_other_rows, refuse_other_shape, refuse_others
 from rigidfluid.core.geometry.value_types import describe
 from rigidfluid.core.geometry.wrong import Wrong
+from rigidfluid.core.model.boundary_forces import BoundaryForces
 from rigidfluid.core.model.flow_error import Refinement
 from rigidfluid.core.model.scalar_account import ScalarAccount
 from rigidfluid.core.model.types import Advance, Fields, InsideFields, Response, Step, Twist, Wrench
@@ -62,12 +63,21 @@ def advance(answer: Any, part: Any, fluid: Any, mesh: Any, step: Step) -> None:
     if step.stresslets and part.stresslets:
         count, d = step.pose.position.shape
         refuse_other_rows(answer.stresslet, (count, d, d), "stresslet", shorter=True)
+    if step.boundary_forces and part.boundary_forces:
+        _boundary_forces(answer.boundary_forces, len(part.problem.conditions), step.pose.position.shape[1])
     if step.cell_errors and part.cell_errors and not step.provisional:
         refuse_other_rows(answer.cell_errors, (len(mesh.cells),), "cell_errors", shorter=True)
     if answer.stress_power is not None:
         refuse_no_number(answer.stress_power, "stress_power", shorter=True)
     if part.scalars and part.problem.scalar is not None and not step.provisional:
         _scalar_account(answer.scalar, len(part.problem.scalar.conditions))
+
+
+def _boundary_forces(answer: Any, pieces: int, dimension: int) -> None:
+    """Refuse what are no forces on so many ``pieces``."""
+    refuse_others(answer, BoundaryForces, "boundary_forces")
+    refuse_other_rows(answer.force, (pieces, dimension), "boundary_forces.force", shorter=True)
+    refuse_other_rows(answer.area, (pieces,), "boundary_forces.area", shorter=True)
 
 
 def _scalar_account(answer: Any, surfaces: int) -> None:

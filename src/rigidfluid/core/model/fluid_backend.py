@@ -74,6 +74,8 @@ class FluidBackend(Part):
     """Tell whether it solves for a transported scalar inside bodies too; else bodies that conduct are refused."""
     stresslets: ClassVar[bool] = False
     """Tell whether it gives stresslets of bodies to a `Step` that wants them."""
+    boundary_forces: ClassVar[bool] = False
+    """Tell whether it gives forces on the domain's boundary to a `Step` that wants them."""
     cell_errors: ClassVar[bool] = False
     """Tell whether it gives errors of cells to a `Step` that wants them."""
     tangents: ClassVar[bool] = False

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.boundary_forces import BoundaryForces
 from rigidfluid.core.model.energy import Ledger
 from rigidfluid.core.model.flow_error import FlowError
 from rigidfluid.core.model.reduced_model import Coupling
@@ -129,10 +130,10 @@ class State:
     from outside on the n bodies from now on, zero on those that are not free; None if nothing was applied yet.
     ``jumped``: the latest tick at which a prescribed velocity was changed by a jump, None before the first.
     ``springs``: those along the surfaces of contacts, None where there are none. ``stresslet`` (n, d, d): by the fluid
-    [force·length]; None at the start, and where it is not wanted. ``scalar``: account of the transported scalar over
-    the latest step; None at the start, and without one. ``cell_errors`` (M,): squared errors of the mesh's cells in the
-    latest step [energy/time]; None on a new mesh, and where they are not wanted. ``flow_error``: at the latest outputs;
-    None before the first, and without error bars.
+    [force·length], and ``boundary_forces``; None at the start, and where they are not wanted. ``scalar``: account of
+    the transported scalar over the latest step; None at the start, and without one. ``cell_errors`` (M,): squared
+    errors of the mesh's cells in the latest step [energy/time]; None on a new mesh, and where they are not wanted.
+    ``flow_error``: at the latest outputs; None before the first, and without error bars.
     """
 
     tick: int
@@ -160,6 +161,7 @@ class State:
     jumped: int | None = None
     springs: TangentialSprings | None = None
     stresslet: FloatArray | None = None
+    boundary_forces: BoundaryForces | None = None
     scalar: ScalarAccount | None = None
     cell_errors: FloatArray | None = None
     flow_error: FlowError | None = None

@@ -48,7 +48,8 @@ class System:
     ``substeps``: of contacts in a step, None where they follow from the contacts; ``implicit``: one step, no substeps.
     ``detection_type(system)``: by which the loop asks the ``detector``; ``detector_why``: who chose that, and for what
     reason. ``reach``: the largest gap that is measured [length].
-    ``stresslets``: those of the bodies are wanted of the backend; ``cell_errors``: those of the mesh's cells are.
+    ``stresslets``: those of the bodies are wanted of the backend; ``boundary_forces``: those on the domain's boundary
+    are; ``cell_errors``: those of the mesh's cells are.
     ``lattice``: by which bodies cross periodic surfaces and meet images of each other; no vectors where they do not.
     ``rotational_factor`` (n,): of each body's surface, see `largest_rotational_factor` [1].
     """
@@ -88,6 +89,7 @@ class System:
     window: Window | None = None
     joined: IntArray = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
     stresslets: bool = False
+    boundary_forces: bool = False
     cell_errors: bool = False
 
     @property

@@ -15,6 +15,7 @@ import numpy as np
 
 from rigidfluid.core.fluid.material import Material as Material
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.model.boundary_forces import BoundaryForces
 from rigidfluid.core.model.kinematics import EACH_ITS_OWN, Kinematics
 from rigidfluid.core.model.ranks import ALONE, Ranks
 from rigidfluid.core.model.scalar_account import ScalarAccount
@@ -279,7 +280,7 @@ class Step:
     ``provisional``: the step will be solved again, along another path of the bodies, and five digits do.
     ``shared``: many bodies share right sides in the solve for its impulse responses, of which three digits do.
     ``links``: what else holds the motions at the new time. ``stresslets``: the bodies' stresslets are wanted;
-    ``cell_errors``: errors of cells are wanted.
+    ``boundary_forces``: forces on the domain's boundary are; ``cell_errors``: errors of cells are.
     """
 
     time: float
@@ -299,6 +300,7 @@ class Step:
     shared: bool = False
     links: Links = NO_LINKS
     stresslets: bool = False
+    boundary_forces: bool = False
     cell_errors: bool = False
 
 
@@ -347,7 +349,8 @@ class Advance:
     a past of a fluid with inertia; else None [energy/time].
     ``stresslet`` (n, d, d): symmetric first moment of the fluid's tractions on each body about its centre, ∮ ½ (a σ·n +
     σ·n a) with n into the fluid and its trace, for a pressure of zero mean in an enclosed flow; None where it is not
-    wanted [force·length]. ``scalar``: account of a transported scalar, None without one, and in provisional steps.
+    wanted [force·length]. ``boundary_forces``: of the fluid on the domain's boundary, None where they are not wanted.
+    ``scalar``: account of a transported scalar, None without one, and in provisional steps.
     ``cell_errors`` (M,): squared error of each cell by its residuals, in the norm of dissipation; None where it is not
     wanted [energy/time].
     """
@@ -365,6 +368,7 @@ class Advance:
     source_power: float = 0.0
     stress_power: float | None = None
     stresslet: FloatArray | None = None
+    boundary_forces: BoundaryForces | None = None
     scalar: ScalarAccount | None = None
     cell_errors: FloatArray | None = None
 

@@ -59,6 +59,7 @@ _STATE: Shapes = {
     },
     **{"hydrodynamic_wrench": _wrench("n"), "contact_wrench": _wrench("n"), "applied": _wrench("n")},
     "stresslet": "ndd",
+    "boundary_forces": {"force": "bd", "area": "b"},
     "cell_errors": "M",
     "flow_error": {"times": "e", "velocity": "egd", "twist": "eNt"},
     "scalar": {"flux": "r", "value": "r", "inside": "r"},

@@ -16,7 +16,10 @@ _IN_BODIES = {
 }
 """Quantities of a table of bodies, some of which other tables have too."""
 
-_ALONE = {"time": "time", "gap": "length", "size": "time", "pressure": "force/length^(d-1)"}
+_ALONE = {
+    **{"time": "time", "gap": "length", "size": "time", "pressure": "force/length^(d-1)", "area": "length^(d-1)"},
+    **dict.fromkeys(("contact_fx", "contact_fy", "contact_fz"), "force"),
+}
 
 
 def column_quantity(column: str, dimension: int) -> str:

@@ -52,6 +52,7 @@ def columns(
         "probes": ("time", "step", "probe", *position, *velocity, "pressure", "scalar"),
         "driving": ("time", "step", "surface", "flux", "pressure_drop"),
         "stresslets": ("time", "step", "body", *stresslet),
+        "walls": ("time", "step", "wall", *force, *(f"contact_{name}" for name in force), "area"),
         "mesh_error": ("time", "step", "error", "dissipation", "relative"),
         "sensitivities": ("time", "step", "parameter", "body", *_derivative_columns(dimension)),
         "scalar": ("time", "step", *SCALAR_COLUMNS),
@@ -125,6 +126,7 @@ def records(
         "probes": list(_probe_rows(system, probes, state, stamp)),
         "driving": list(_driving_rows(system, state, stamp)),
         "stresslets": list(_stresslet_rows(system, state, stamp)),
+        "walls": list(_wall_rows(system, state, stamp, forces)),
         "mesh_error": list(_error_rows(state, stamp)),
         "sensitivities": [],
         "scalar": [] if state.scalar is None else [(*stamp, *(getattr(state.scalar, name) for name in SCALAR_COLUMNS))],
@@ -229,6 +231,19 @@ def _stresslet_rows(system: System, state: State, stamp: Row) -> Iterator[Row]:
         upper = np.triu_indices(system.dimension)
         for name, stresslet in zip(system.surfaces, state.stresslet, strict=False):
             yield (*stamp, name, *stresslet[upper].tolist())
+
+
+def _wall_rows(system: System, state: State, stamp: Row, forces: FloatArray) -> Iterator[Row]:
+    """A row for each surface of the domain that is not periodic, where its forces are known."""
+    found = state.boundary_forces
+    if found is None:
+        return
+    pushed, acting = np.zeros((len(system.surfaces), system.dimension)), system.acting(state.contacts)
+    np.subtract.at(pushed, state.contacts.body_b[acting], forces[acting])
+    for number, name in enumerate(system.domain.names):
+        if number not in system.domain.periodic_pieces:
+            by_contacts = pushed[len(system.bodies) + number].tolist()
+            yield (*stamp, name, *found.force[number].tolist(), *by_contacts, float(found.area[number]))
 
 
 def _error_rows(state: State, stamp: Row) -> Iterator[Row]:

@@ -147,6 +147,7 @@ def exchanged(successor: Successor, state: State, updater: Updater, clock: Clock
         link=system.joints.unloaded(pose),
         ledger=ledger,
         stresslet=None,
+        boundary_forces=None,
         cell_errors=None,
         flow_error=None,
         remesh_failed=None,

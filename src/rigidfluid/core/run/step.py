@@ -86,6 +86,7 @@ def attempt(tools: Tools, state: State, level: int, path: BodyStep, provisional:
         gaps=place.gaps,
         hydrodynamic_wrench=advance.hydrodynamic_wrench,
         stresslet=advance.stresslet,
+        boundary_forces=advance.boundary_forces,
         scalar=advance.scalar,
         cell_errors=advance.cell_errors,
         contact_wrench=_mean(path.impulse, end.size),

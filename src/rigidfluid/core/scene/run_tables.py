@@ -34,6 +34,10 @@ class OutputTable(Table):
         default=(), description="Points that record velocity, pressure and scalar [length]"
     )
     stresslets: bool = Field(default=False, description="Record the stresslets of the bodies by the fluid")
+    walls: bool = Field(
+        default=False,
+        description="Record the forces of the fluid, and of contacts, on the surfaces of the domain",
+    )
     sensitivities: tuple[str, ...] = Field(
         default=(),
         description="Keys of the scene, as `fluid.viscosity` or `body.0.density`, by whose values poses, velocities "

@@ -102,6 +102,7 @@ def assemble(model: Model, check: Callable[[Model, Pose], None] = check_geometry
         window=window,
         joined=joined_bodies(model),
         stresslets=model.output.stresslets,
+        boundary_forces=model.output.walls,
         cell_errors=model.fluid.estimates_errors,
     )
 

@@ -190,6 +190,11 @@ def _check_stresslets(model: Model) -> None:
         _require("stresslets", model, "output.stresslets", "true", "a backend that gives stresslets")
 
 
+def _check_walls(model: Model) -> None:
+    if model.output.walls:
+        _require("boundary_forces", model, "output.walls", "true", "a backend that gives forces on surfaces")
+
+
 def _check_estimate(model: Model) -> None:
     if model.fluid.estimates_errors:
         mesh = model.fluid.mesh
@@ -306,6 +311,7 @@ _QUESTIONS: tuple[Callable[[Model], None], ...] = (
     _check_around,
     _check_probes,
     _check_stresslets,
+    _check_walls,
     _check_estimate,
     _check_goal,
     _check_sensitivities,

@@ -61,6 +61,14 @@ class Face:
             return area_vectors(node_points[self.facet_nodes])
         return np.asarray(facet_weights(node_points, self.facets)[..., None] * self._normal)
 
+    def pressure_load(self, time: float, node_points: FloatArray) -> FloatArray:
+        """∫ φᵢ p n of the given pressure over each facet for its nodes i, (F, 3 | 6, d) [force], n into the fluid.
+
+        ``node_points`` (nodes, d) [length].
+        """
+        pressure = self.condition.pressure(time, node_points[self.facet_nodes.ravel()])
+        return np.asarray(pressure.reshape(self.facet_nodes.shape)[..., None] * self.area_vectors(node_points))
+
     def normals(self, node_points: FloatArray) -> FloatArray:
         """Unit normals into the fluid of each facet at its nodes, (F, 3 | 6, d), for ``node_points`` (nodes, d)."""
         if self._normal is None:

@@ -79,11 +79,7 @@ def into_fluid(facets: IntArray, cells: IntArray, points: FloatArray) -> IntArra
     ``points`` (N, d): the vertices.
     """
     d = points.shape[1]
-    number = len(points) ** np.arange(d)
-    faces = np.stack([np.delete(cells, corner, axis=1) for corner in range(d + 1)], axis=1)
-    keys = (np.sort(faces, axis=2) @ number).ravel()
-    order = np.argsort(keys, kind="stable")
-    opposite = cells.ravel()[order[np.searchsorted(keys, np.sort(facets, axis=1) @ number, sorter=order)]]
+    opposite = cells.ravel()[opposite_corners(facets, cells, len(points))]
     corners = points[facets]
     edges = corners[:, 1:] - corners[:, :1]
     normal = _turned(edges[:, 0]) if d == 2 else np.cross(edges[:, 0], edges[:, 1])
@@ -91,6 +87,19 @@ def into_fluid(facets: IntArray, cells: IntArray, points: FloatArray) -> IntArra
     found = facets.copy()
     found[outward, :2] = facets[outward, 1::-1]
     return found
+
+
+def opposite_corners(facets: IntArray, cells: IntArray, vertices: int) -> IntArray:
+    """The corner that each of the ``facets`` (F, d) lies opposite to, (F,), counted through all ``cells`` (M, d+1).
+
+    A boundary facet is of one cell; ``vertices``: the number of the mesh's.
+    """
+    d = facets.shape[1]
+    number = vertices ** np.arange(d)
+    faces = np.stack([np.delete(cells, corner, axis=1) for corner in range(d + 1)], axis=1)
+    keys = (np.sort(faces, axis=2) @ number).ravel()
+    order = np.argsort(keys, kind="stable")
+    return np.asarray(order[np.searchsorted(keys, np.sort(facets, axis=1) @ number, sorter=order)])
 
 
 def _turned(vectors: FloatArray) -> FloatArray:

@@ -10,8 +10,10 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.kinematics import prescribed_part
 from rigidfluid.core.mechanics.wrenches import flat
 from rigidfluid.core.mesh.mesh_quality import cell_volumes
+from rigidfluid.core.model.boundary_forces import BoundaryForces
 from rigidfluid.core.model.types import Advance, FluidState, Mesh, Step, Twist, Wrench
 from rigidfluid.taylor_hood.elements.container import container_velocity
+from rigidfluid.taylor_hood.stepping.boundary_forces import BoundaryFlow, boundary_forces
 from rigidfluid.taylor_hood.stepping.cell_errors import DiscreteFlow, cell_errors
 from rigidfluid.taylor_hood.stepping.momentum import Moving, momentum, past_load
 from rigidfluid.taylor_hood.stepping.newton import solve_newton
@@ -103,6 +105,7 @@ def _measured(equations: Equations, solution: Solution, on_faces: FloatArray, li
         source_power=_source_power(equations, velocity),
         stress_power=stress_power(discretisation, matrix.points, velocity, mean) if begins else None,
         stresslet=_stresslets(equations, solution) if step.stresslets else None,
+        boundary_forces=_boundary_forces(equations, solution) if step.boundary_forces else None,
         cell_errors=_cell_errors(equations, solution) if step.cell_errors and not step.provisional else None,
     )
 
@@ -127,10 +130,30 @@ def _stresslets(equations: Equations, solution: Solution) -> FloatArray:
     found = stresslets(surfaces, -solution.reaction, points, equations.step.pose.position)
     if not surfaces.enclosed:
         return found
-    centred = centre_pressure(equations.discretisation, equations.matrix.points, solution.pressure)
-    raised = float(centred[0] - solution.pressure[0])
     volumes = body_volumes(surfaces, equations.mesh, points)
-    return np.asarray(found - raised * volumes[:, None, None] * np.eye(points.shape[1]))
+    return np.asarray(found - _raised(equations, solution) * volumes[:, None, None] * np.eye(points.shape[1]))
+
+
+def _boundary_forces(equations: Equations, solution: Solution) -> BoundaryForces:
+    """Forces on the pieces of the boundary, for the pressure that the state has."""
+    flow = BoundaryFlow(
+        surfaces=equations.discretisation.surfaces,
+        mesh=equations.mesh,
+        material=equations.discretisation.problem.material,
+        time=equations.step.time,
+        points=equations.matrix.node_points,
+        velocity=solution.velocity,
+        pressure=solution.pressure,
+        reaction=solution.reaction,
+        raised=_raised(equations, solution),
+    )
+    return boundary_forces(flow)
+
+
+def _raised(equations: Equations, solution: Solution) -> float:
+    """Pressure of the state less that of the solution, the same everywhere [force/length^(d-1)]."""
+    centred = centre_pressure(equations.discretisation, equations.matrix.points, solution.pressure)
+    return float(centred[0] - solution.pressure[0])
 
 
 def hydrodynamic_wrench(equations: Equations, solution: Solution) -> Wrench:

@@ -13,6 +13,7 @@ from rigidfluid.core.geometry.facets import area_vectors
 from rigidfluid.core.geometry.quadratic_cells import mean_products, node_gradients
 from rigidfluid.core.mesh.mesh_quality import cell_volumes, edge_lengths
 from rigidfluid.taylor_hood.elements.numbering import Numbering
+from rigidfluid.taylor_hood.stepping.nodal_stress import nodal_stress
 
 _SHARPNESS = 2.0 * np.pi
 """Over lengths in the weights: the degree of the velocity (Melenk and Wohlmuth), and π of Poincaré's inequality in
@@ -60,13 +61,9 @@ def cell_errors(flow: DiscreteFlow, material: Material) -> FloatArray:
     have no part.
     """
     nodes, d = flow.numbering.cell_nodes, flow.numbering.dimension
-    points = flow.points[nodes]
-    gradient = node_gradients(points, flow.velocity[nodes])
+    points, pressure = flow.points[nodes], flow.numbering.interpolate_to_nodes(flow.pressure)[nodes]
+    gradient, viscosity, stress = nodal_stress(points, flow.velocity[nodes], pressure, material)
     divergence = np.einsum("mbii->mb", gradient)
-    strain = gradient + gradient.swapaxes(2, 3)
-    viscosity = material.viscosity(np.sqrt(0.5 * np.sum(strain**2, axis=(2, 3))).ravel()).reshape(divergence.shape)
-    stress = viscosity[..., None, None] * strain
-    stress -= flow.numbering.interpolate_to_nodes(flow.pressure)[nodes][..., None, None] * np.eye(d)
     forces = node_gradients(points, stress.reshape(*divergence.shape, d * d)).reshape(*stress.shape, d)
     residual = np.einsum("mbijj->mbi", forces) - flow.rate[nodes]
     residual -= (gradient @ flow.momentum[nodes][..., None])[..., 0]

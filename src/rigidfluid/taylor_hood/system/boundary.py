@@ -19,9 +19,7 @@ def pressure_load(surfaces: Surfaces, node_points: FloatArray, time: float) -> F
     with surfaces.ranks.raise_on_all():
         for face in surfaces.faces:
             if not face.condition.prescribes_normal:
-                nodes = face.facet_nodes
-                pressure = face.condition.pressure(time, node_points[nodes.ravel()]).reshape(nodes.shape)
-                np.add.at(load, nodes, pressure[..., None] * face.area_vectors(node_points))
+                np.add.at(load, face.facet_nodes, face.pressure_load(time, node_points))
     return load
 
 

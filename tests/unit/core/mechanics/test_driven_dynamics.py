@@ -108,7 +108,7 @@ def system_of(motions: CarriedBodies, dimension: int) -> Any:
     count = len(motions.carrier)
     return SimpleNamespace(
         motions=motions, dimension=dimension, solved_joints=joints, has_fluid=True, stresslets=False,
-        cell_errors=False,
+        boundary_forces=False, cell_errors=False,
         weight=np.zeros((count, dimension)),
         inertia=motions._own_inertia, prescribed=np.zeros(count, dtype=bool), prescribed_twist=lambda _: None,
     )  # fmt: skip
