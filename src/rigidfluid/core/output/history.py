@@ -87,7 +87,7 @@ class History(Described):
         ----------
         name : str
             ``bodies``, ``contacts``, ``joints``, ``energy``, ``steps``, ``probes``, ``driving``, ``stresslets``,
-            ``mesh_error``, ``sensitivities``, ``error_estimates``, ``scalar`` or ``scalar_fluxes``.
+            ``statistics``, ``mesh_error``, ``sensitivities``, ``error_estimates``, ``scalar`` or ``scalar_fluxes``.
         only : iterable of str, optional
             The columns that are wanted; all if not given. A folder that an earlier version has written has all that it
             knew.
@@ -193,6 +193,11 @@ class History(Described):
     def stresslets(self) -> dict[str, NDArray[Any]]:
         """The table of stresslets.csv: a row per body and accepted step, with ``output.stresslets``."""
         return self.table("stresslets")
+
+    @property
+    def statistics(self) -> dict[str, NDArray[Any]]:
+        """The table of statistics.csv: a row per accepted step, with ``output.statistics``."""
+        return self.table("statistics")
 
     @property
     def mesh_error(self) -> dict[str, NDArray[Any]]:

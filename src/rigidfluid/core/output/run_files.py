@@ -23,6 +23,7 @@ TABLES = {
     "probes": "the fluid at the points of `output.probes`",
     "driving": "flux and drop of pressure of each pair of periodic surfaces",
     "stresslets": "a row per body with `output.stresslets`",
+    "statistics": "velocities, gaps, contacts and stress of many bodies, with `output.statistics`",
     "mesh_error": "the error that the mesh makes, with `mesh.estimate`",
     "sensitivities": "derivatives by the keys in `output.sensitivities`, a row per key and body",
     "scalar": "content, balance and extremes of the scalar of a table `[scalar]`",

@@ -34,6 +34,9 @@ class OutputTable(Table):
         default=(), description="Points that record velocity, pressure and scalar [length]"
     )
     stresslets: bool = Field(default=False, description="Record the stresslets of the bodies by the fluid")
+    statistics: bool = Field(
+        default=False, description="Record at each step velocities, gaps, contacts and stress of the bodies that move"
+    )
     sensitivities: tuple[str, ...] = Field(
         default=(),
         description="Keys of the scene, as `fluid.viscosity` or `body.0.density`, by whose values poses, velocities "

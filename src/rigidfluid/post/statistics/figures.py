@@ -9,7 +9,7 @@ import numpy as np
 from rigidfluid.post.reports.units import Units
 from rigidfluid.post.statistics.blocks import Mean
 from rigidfluid.post.statistics.contact_network import ContactNetwork
-from rigidfluid.post.statistics.motion import Diffusion
+from rigidfluid.post.statistics.diffusion import Diffusion
 from rigidfluid.post.statistics.pair_distribution import PairDistribution
 from rigidfluid.post.statistics.profiles import Profile
 from rigidfluid.post.statistics.samples import Samples

@@ -9,6 +9,7 @@ from typing import Any
 
 import matplotlib
 
+from rigidfluid.core.mechanics.suspension import mean_gap, mean_velocity, velocity_fluctuations
 from rigidfluid.core.output.disk import replace_text, writing
 from rigidfluid.core.output.tables import table_path
 from rigidfluid.errors import OutputError
@@ -19,8 +20,8 @@ from rigidfluid.post.statistics.blocks import mean
 from rigidfluid.post.statistics.contact_network import contact_network
 from rigidfluid.post.statistics.contact_rows import contact_rows
 from rigidfluid.post.statistics.contact_stresses import contact_stresses
+from rigidfluid.post.statistics.diffusion import diffusion
 from rigidfluid.post.statistics.figures import Statistics
-from rigidfluid.post.statistics.motion import diffusion, mean_velocity, velocity_fluctuations
 from rigidfluid.post.statistics.pair_distribution import pair_distribution
 from rigidfluid.post.statistics.plot import statistics_plot
 from rigidfluid.post.statistics.profiles import profile
@@ -73,9 +74,9 @@ def measured(
     return Statistics(
         results.units,
         samples,
-        mean(samples.mean_gap),
-        mean_velocity(samples),
-        velocity_fluctuations(samples),
+        mean(mean_gap(samples.gap)),
+        mean(mean_velocity(samples.velocity)),
+        mean(velocity_fluctuations(samples.velocity)),
         pair_distribution(samples),
         structure_factor(samples),
         diffusion(samples),

@@ -72,14 +72,6 @@ class Samples:
         return np.asarray(np.pi * self.radius**2 if self.dimension == 2 else 4.0 / 3.0 * np.pi * self.radius**3)
 
     @property
-    def mean_gap(self) -> FloatArray:
-        """Mean gap over the bodies that have something near (s,), not a number where none has [length]."""
-        known = np.isfinite(self.gap)
-        count = known.sum(axis=1)
-        total = np.where(known, self.gap, 0.0).sum(axis=1)
-        return np.asarray(np.divide(total, count, out=np.full(len(count), np.nan), where=count > 0))
-
-    @property
     def fraction(self) -> float:
         """Volume of the bodies over that of the domain [1]."""
         return float(self.body_volume.sum() / self.volume)

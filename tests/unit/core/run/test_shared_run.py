@@ -135,6 +135,7 @@ def test_each_rank_keeps_its_part_and_the_root_what_is_there_once(tmp_path):
             "probes.csv",
             "driving.csv",
             "stresslets.csv",
+            "statistics.csv",
             "mesh_error.csv",
             "sensitivities.csv",
             "error_estimates.csv",
