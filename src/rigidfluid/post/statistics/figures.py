@@ -58,6 +58,8 @@ class Statistics(NamedTuple):
                 "place": layers.place.tolist(),
                 "fraction": layers.fraction.to_list(),
                 "velocity": layers.velocity.to_list(),
+                "fluid_velocity": None if layers.fluid is None else layers.fluid.to_list(),
+                "mixture_velocity": None if layers.mixture is None else layers.mixture.to_list(),
             },
             "contacts": {
                 "coordination": contacts.coordination.to_list(),

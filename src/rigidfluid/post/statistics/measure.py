@@ -22,9 +22,10 @@ from rigidfluid.post.statistics.contact_rows import contact_rows
 from rigidfluid.post.statistics.contact_stresses import contact_stresses
 from rigidfluid.post.statistics.diffusion import diffusion
 from rigidfluid.post.statistics.figures import Statistics
+from rigidfluid.post.statistics.fluid_layers import fluid_layers
 from rigidfluid.post.statistics.pair_distribution import pair_distribution
 from rigidfluid.post.statistics.plot import statistics_plot
-from rigidfluid.post.statistics.profiles import profile
+from rigidfluid.post.statistics.profiles import LAYERS, profile
 from rigidfluid.post.statistics.samples import SAMPLES, samples_of
 from rigidfluid.post.statistics.structure_factor import structure_factor
 from rigidfluid.post.statistics.suspension_stress import suspension_stress
@@ -65,7 +66,7 @@ def measured(
     """Statistics of these results, with their ``tables`` of contacts and stresslets, in at most so many states."""
     if across not in list(results.axes):
         raise OutputError("--across", across, f"one of {', '.join(results.axes)}", "Name an axis.")
-    samples = samples_of(results, since, until, most)
+    samples, axis = samples_of(results, since, until, most), results.axes.index(across)
     rows, stresslets = contact_rows(samples, tables["contacts"]), tables["stresslets"]
     stress = None
     if stresslets:
@@ -80,7 +81,7 @@ def measured(
         pair_distribution(samples),
         structure_factor(samples),
         diffusion(samples),
-        profile(samples, results.axes.index(across)),
+        profile(samples, axis, fluid_layers(results, samples, axis, LAYERS)),
         contact_network(rows),
         stress,
         results.system.fluid is not None,

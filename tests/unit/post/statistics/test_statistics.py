@@ -47,6 +47,7 @@ def made(
         time=0.1 * np.arange(states),
         position=position,
         velocity=np.zeros_like(position) if velocity is None else velocity,
+        angular_velocity=np.zeros((states, count, 2 * dimension - 3)),
         gap=np.full((states, count), 0.1),
         radius=np.full(count, radius),
         name=tuple(f"ball{number}" for number in range(count)),
@@ -110,8 +111,10 @@ def test_statistics_do_not_depend_on_the_period_in_which_a_body_is() -> None:
         samples = made(position, velocity=np.ones_like(position), radius=0.03, period=1.0)
         on_b = position[:, 1] + [shift + 0.03, 0.0]
         network = contact_network(contact_rows(samples, table | {"bx": on_b[:, 0], "by": on_b[:, 1]}))
-        found.append((pair_distribution(samples).value.value, network.stress.value, profile(samples, 1).fraction.value))
-        assert profile(samples, 0).fraction.value.sum() / 20.0 == pytest.approx(3.0 * np.pi * 0.03**2)
+        found.append(
+            (pair_distribution(samples).value.value, network.stress.value, profile(samples, 1, None).fraction.value)
+        )
+        assert profile(samples, 0, None).fraction.value.sum() / 20.0 == pytest.approx(3.0 * np.pi * 0.03**2)
     np.testing.assert_allclose(found[0][1], [[-3.0 * 0.05, 0.0], [0.0, 0.0]], atol=1e-12)
     for other in found[1:]:
         for one, same in zip(found[0], other, strict=True):
@@ -183,7 +186,7 @@ def test_layers_share_a_body_by_its_volume(dimension: int) -> None:
     place[:, 1, 1] = 0.21
     velocity = np.zeros_like(place)
     velocity[:, 0, 0], velocity[:, 1, 0] = 2.0, -1.0
-    found = profile(made(place, velocity, radius=0.03), 1)
+    found = profile(made(place, velocity, radius=0.03), 1, None)
     volume = np.pi * 0.03**2 if dimension == 2 else 4.0 / 3.0 * np.pi * 0.03**3
     assert found.fraction.value.sum() / 20.0 == pytest.approx(2.0 * volume)
     half = found.fraction.value[[9, 10]] / 20.0
