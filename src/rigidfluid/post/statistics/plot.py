@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -57,7 +59,8 @@ def _draw_layers(layers: Axes, speeds: Axes, found: Statistics) -> None:
                 label, off = f"{name}, {kind}", np.nan_to_num(error)
                 speeds.errorbar(curve, profile.place, xerr=off, color=colour, linestyle=line, label=label)
     speeds.set(xlabel="velocity [length/time]", ylabel=across)
-    speeds.legend()
+    above: dict[str, Any] = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0)}
+    speeds.legend(ncols=3, fontsize=6.5, columnspacing=1.0, handlelength=2.2, **above)
 
 
 def _draw_figures(axes: Axes, found: Statistics) -> None:

@@ -96,7 +96,7 @@ def channel(dimension: int, *bodies: dict[str, Any], **tables: Any) -> dict[str,
 def profiled(results: Results, axis: int) -> Profile:
     """Profile of all bodies in all states after the start."""
     samples = samples_at(results, np.arange(1, len(results.time)), np.arange(len(results.names)))
-    return profile(samples, axis, fluid_layers(results, samples, axis, LAYERS))
+    return profile(samples, axis, fluid_layers(results, samples, axis, LAYERS, 3))
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -252,6 +252,7 @@ def test_one_body_with_stresslets_has_no_statistics_in_its_report() -> None:
     one = SimpleNamespace(folder=Path(), system=SimpleNamespace(prescribed=np.array([True, False])))
     tables = {"stresslets": {"step": np.arange(3)}}
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("rigidfluid.post.statistics.report_section.load_results", lambda folder: folder)
         patch.setattr("rigidfluid.post.statistics.report_section.tables_of", lambda _: tables)
         assert section(cast("Results", one)) == Section()
 
