@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.mechanics.shear import shear_of_walls
 from rigidfluid.core.mechanics.suspension import (
     contact_stress,
@@ -31,8 +31,7 @@ def statistics_rows(system: System, state: State, time: float, forces: FloatArra
     number = np.where(moves, np.cumsum(moves) - 1, -1)
     a, b = number[near.body_a], number[near.body_b]
     paired = (a >= 0) & (b >= 0)
-    pairs = acting[paired[acting]]
-    by_contacts = contact_stress(forces[pairs], _arms(state, pairs), volume)
+    by_contacts = contact_stress(forces[paired], _arms(state, paired), volume)
     total, viscosity = _suspension(system, state, free, by_contacts)
     return [
         (
@@ -49,12 +48,12 @@ def statistics_rows(system: System, state: State, time: float, forces: FloatArra
     ]
 
 
-def _arms(state: State, pairs: IntArray) -> FloatArray:
-    """Vectors (p, d) to the centre of the first body from that of the second one's image, in contacts between bodies
-    [length]."""
+def _arms(state: State, paired: BoolArray) -> FloatArray:
+    """Vectors (p, d) to the centre of the first body from that of the second one's image, in those of the contacts (m,)
+    that are between bodies [length]."""
     near, centre = state.contacts, state.pose.position
-    arms = centre[near.body_a[pairs]] - centre[near.body_b[pairs]]
-    return arms if near.shift is None else arms - near.shift[pairs]
+    arms = centre[near.body_a[paired]] - centre[near.body_b[paired]]
+    return arms if near.shift is None else arms - near.shift[paired]
 
 
 def _suspension(system: System, state: State, free: BoolArray, by_contacts: FloatArray) -> tuple[FloatArray, float]:
