@@ -25,7 +25,7 @@ class Pieces(NamedTuple):
 
     def select(self, chosen: BoolArray) -> Pieces:
         """The pieces that are ``chosen`` (P,)."""
-        return Pieces(*(values[chosen] for values in self))
+        return Pieces(self.cell[chosen], self.corners[chosen], self.height[chosen])
 
     def with_corner(self, row: IntArray, corner: FloatArray, height: FloatArray) -> Pieces:
         """Pieces whose corner number ``row`` (P,) is moved to ``corner`` (P, d+1) at a ``height`` (P,)."""
