@@ -184,6 +184,7 @@ if TYPE_CHECKING:
     from rigidfluid.core.run.simulation import Simulation
     from rigidfluid.post.notebook import NotebookProgress
     from rigidfluid.post.run_results import RunResults, load_results
+    from rigidfluid.post.statistics.measure import measure_statistics
 
 __all__ = [
     "BODY",
@@ -404,6 +405,7 @@ __all__ = [
     "initial_pose",
     "load_results",
     "load_scene",
+    "measure_statistics",
     "missing_packages",
     "model_of",
     "require_plane",
@@ -437,5 +439,6 @@ _LOOP = {
     "SavedRun": "rigidfluid.core.run.saved_run",
     "Simulation": "rigidfluid.core.run.simulation",
     "load_results": "rigidfluid.post.run_results",
+    "measure_statistics": "rigidfluid.post.statistics.measure",
     "run": "rigidfluid.core.run.run",
 }

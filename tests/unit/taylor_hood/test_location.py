@@ -6,11 +6,12 @@ import numpy as np
 from falling import falling_disk
 
 from rigidfluid.bodies.sphere import Sphere
+from rigidfluid.core.geometry.quadratic_cells import quadratic_basis
 from rigidfluid.core.mesh.generation.inside import inside_mesh
 from rigidfluid.core.mesh.location import CellFinder, locate
 from rigidfluid.core.mesh.size.size_field import Sizes
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.taylor_hood.elements.location import locate_on_curves, located, quadratic_basis
+from rigidfluid.taylor_hood.elements.location import locate_on_curves, located
 from rigidfluid.taylor_hood.elements.numbering import EDGES, Numbering
 
 

@@ -21,6 +21,19 @@ def node_coordinates(count: int) -> FloatArray:
     return np.vstack([corners, 0.5 * (corners[first] + corners[second])])
 
 
+def quadratic_basis(coordinates: FloatArray) -> FloatArray:
+    """Nodal functions (…, b) at barycentric ``coordinates`` (…, count) [1]."""
+    first, second = np.transpose(EDGES[coordinates.shape[-1]])
+    corners = coordinates * (2.0 * coordinates - 1.0)
+    return np.concatenate([corners, 4.0 * coordinates[..., first] * coordinates[..., second]], axis=-1)
+
+
+def node_stretches(points: FloatArray) -> FloatArray:
+    """Volume at each node over that in the cell's own coordinates, (M, b), of cells with nodes ``points`` (M, b, d); in
+    3D less a term of third order in the bends it is quadratic within the cell [length^d]."""
+    return np.asarray(np.abs(np.linalg.det(_along_slopes(points))))
+
+
 def node_gradients(points: FloatArray, values: FloatArray) -> FloatArray:
     """∂v_i/∂x_j at the b nodes of each of M cells, (M, b, c, d), index i before j, of ``values`` (M, b, c) at the nodes
     ``points`` (M, b, d).

@@ -26,6 +26,14 @@ class Shear(NamedTuple):
     along: FloatArray
     across: FloatArray
 
+    def part(self, one: FloatArray, other: FloatArray, stress: FloatArray) -> FloatArray:
+        """Component (…) of stresses Σ (…, d, d), ``one``·Σ·``other`` of two directions (d,)."""
+        return np.asarray(np.einsum("i,...ij,j->...", one, stress, other))
+
+    def added_viscosity(self, stress: FloatArray) -> FloatArray | None:
+        """Viscosity t·Σ·n/(μγ) (…) that stresses Σ (…, d, d) add to the fluid's, over it; None where it varies [1]."""
+        return None if self.stress is None else self.part(self.along, self.across, stress) / self.stress
+
 
 def shear_of_walls(system: System) -> Shear | None:
     """Shear of a fluid between two opposite flat walls, one of which at least slides; None if there are none, or

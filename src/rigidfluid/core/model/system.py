@@ -132,6 +132,11 @@ class System:
         return np.array([body.bounding_radius for body in self.bodies], dtype=float)
 
     @cached_property
+    def volumes(self) -> FloatArray:
+        """Volumes of the bodies (n,) [length^d]."""
+        return np.array([body.volume for body in self.bodies], dtype=float)
+
+    @cached_property
     def arms(self) -> FloatArray:
         """Bounding radii, but zero for balls, which turn in their place (n,) [length]."""
         return np.where(self.balls, 0.0, self.bounding_radii)

@@ -87,7 +87,8 @@ class History(Described):
         ----------
         name : str
             ``bodies``, ``contacts``, ``joints``, ``energy``, ``steps``, ``probes``, ``driving``, ``stresslets``,
-            ``walls``, ``mesh_error``, ``sensitivities``, ``error_estimates``, ``scalar`` or ``scalar_fluxes``.
+            ``walls``, ``statistics``, ``mesh_error``, ``sensitivities``, ``error_estimates``, ``scalar`` or
+            ``scalar_fluxes``.
         only : iterable of str, optional
             The columns that are wanted; all if not given. A folder that an earlier version has written has all that it
             knew.
@@ -198,6 +199,11 @@ class History(Described):
     def walls(self) -> dict[str, NDArray[Any]]:
         """The table of walls.csv: a row per surface of the domain and accepted step, with ``output.walls``."""
         return self.table("walls")
+
+    @property
+    def statistics(self) -> dict[str, NDArray[Any]]:
+        """The table of statistics.csv: a row per accepted step, with ``output.statistics``."""
+        return self.table("statistics")
 
     @property
     def mesh_error(self) -> dict[str, NDArray[Any]]:

@@ -42,7 +42,7 @@ def columns(
     position, velocity, force = quantities["position"], quantities["velocity"], quantities["force"]
     a, b, normal = (_components(name, dimension) for name in "abn")
     wrapped = wrapped_columns(dimension) if periodic else ()
-    stresslet = tuple(f"s{'xyz'[row]}{'xyz'[column]}" for row, column in zip(*np.triu_indices(dimension), strict=True))
+    stresslet = _symmetric_components("s", dimension)
     return {
         "bodies": ("time", "step", "body", *chain(*quantities.values()), "gap", *wrapped),
         "contacts": ("time", "step", "a", "b", *a, *b, *normal, "gap", *force),
@@ -53,6 +53,7 @@ def columns(
         "driving": ("time", "step", "surface", "flux", "pressure_drop"),
         "stresslets": ("time", "step", "body", *stresslet),
         "walls": ("time", "step", "wall", *force, *(f"contact_{name}" for name in force), "area"),
+        "statistics": ("time", "step", *_statistics_columns(dimension)),
         "mesh_error": ("time", "step", "error", "dissipation", "relative"),
         "sensitivities": ("time", "step", "parameter", "body", *_derivative_columns(dimension)),
         "scalar": ("time", "step", *SCALAR_COLUMNS),
@@ -98,8 +99,22 @@ def estimate_columns(dimension: int) -> tuple[str, ...]:
     return tuple(f"{name}_{cause}" for name in names for cause in CAUSES)
 
 
+def _statistics_columns(dimension: int) -> Iterator[str]:
+    """Columns of the statistics of the bodies that move."""
+    axes, velocity = "xyz"[:dimension], _components("v", dimension)
+    yield from ("bodies", "volume_fraction", *velocity, *(f"{name}_fluctuation" for name in velocity))
+    yield from ("gap", "least_gap", "least_wall_gap", "coordination", "contacts")
+    yield from (f"contact_{row}{column}" for row in axes for column in axes)
+    yield from (*_symmetric_components("stress_", dimension), "relative_viscosity")
+
+
 def _components(name: str, dimension: int) -> tuple[str, ...]:
     return tuple(name + axis for axis in "xyz"[:dimension])
+
+
+def _symmetric_components(name: str, dimension: int) -> tuple[str, ...]:
+    """Names of the components of a symmetric tensor, row by row."""
+    return tuple(f"{name}{'xyz'[row]}{'xyz'[column]}" for row, column in zip(*np.triu_indices(dimension), strict=True))
 
 
 class StepCost(NamedTuple):
@@ -127,6 +142,7 @@ def records(
         "driving": list(_driving_rows(system, state, stamp)),
         "stresslets": list(_stresslet_rows(system, state, stamp)),
         "walls": list(_wall_rows(system, state, stamp, forces)),
+        "statistics": [],
         "mesh_error": list(_error_rows(state, stamp)),
         "sensitivities": [],
         "scalar": [] if state.scalar is None else [(*stamp, *(getattr(state.scalar, name) for name in SCALAR_COLUMNS))],

@@ -24,6 +24,7 @@ TABLES = {
     "driving": "flux and drop of pressure of each pair of periodic surfaces",
     "stresslets": "a row per body with `output.stresslets`",
     "walls": "forces on the surfaces of the domain, with `output.walls`",
+    "statistics": "velocities, gaps, contacts and stress of many bodies, with `output.statistics`",
     "mesh_error": "the error that the mesh makes, with `mesh.estimate`",
     "sensitivities": "derivatives by the keys in `output.sensitivities`, a row per key and body",
     "scalar": "content, balance and extremes of the scalar of a table `[scalar]`",

@@ -18,6 +18,7 @@ from rigidfluid.core.output.point_sets import point_sets
 from rigidfluid.core.output.records import Records, StepCost, count_cells, records
 from rigidfluid.core.output.writer import Writer
 from rigidfluid.core.run.companions import Companions
+from rigidfluid.core.run.statistics_row import statistics_rows
 from rigidfluid.errors import OutputError
 
 if TYPE_CHECKING:
@@ -55,6 +56,8 @@ class Recorder:
         state = simulation.state
         forces = contact_forces(simulation.system, simulation.stepper.scheme, state, simulation.time)
         rows = records(simulation.system, self._probes, state, simulation.time, _cost(simulation), forces)
+        if simulation.model.output.statistics:
+            rows["statistics"] = statistics_rows(simulation.system, state, simulation.time, forces)
         self._extend({**rows, **self.companions.step_rows(simulation)}, simulation)
         self.extremes = self.extremes.after(state.gaps, state.twist)
 

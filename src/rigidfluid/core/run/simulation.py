@@ -100,7 +100,7 @@ class Simulation(Described):
         require_processes(processes, system.backend)
         self.clock = Clock.for_steps(model.time.step, model.time.shortest, model.time.end)
         files = {} if out is None else file_digests(model.document)
-        self._origin, self.population = model, Population()
+        self.origin, self.population = model, Population()
         earlier = None
         if resume:
             earlier, self.model, system = earlier_of(model, out, system, self.clock, files)
@@ -409,8 +409,8 @@ class Simulation(Described):
         """Go on with other bodies; nothing is changed where they do not fit."""
         require_one_process(self.system.backend)
         before = self.model, self.system, self.population
-        with told_memory(), self._threads(), self.watch("mesh"), subjects_by_name(population.names(self._origin)):
-            next_one = successor(self._origin, self.model, self.system, self.state, population)
+        with told_memory(), self._threads(), self.watch("mesh"), subjects_by_name(population.names(self.origin)):
+            next_one = successor(self.origin, self.model, self.system, self.state, population)
             self._follow(next_one.model, next_one.exchange.after, next_one.population)
             try:
                 self.state = exchanged(next_one, self.state, self.mesh_updater, self.clock)

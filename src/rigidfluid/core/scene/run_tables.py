@@ -38,6 +38,9 @@ class OutputTable(Table):
         default=False,
         description="Record the forces of the fluid, and of contacts, on the surfaces of the domain",
     )
+    statistics: bool = Field(
+        default=False, description="Record at each step velocities, gaps, contacts and stress of the bodies that move"
+    )
     sensitivities: tuple[str, ...] = Field(
         default=(),
         description="Keys of the scene, as `fluid.viscosity` or `body.0.density`, by whose values poses, velocities "

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import takewhile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.system import System
@@ -62,19 +64,27 @@ def changing_bodies(
     rows = _whole_states(folder, names, known, complete=complete)
     table = {name: np.array(values) for name, values in zip(names["bodies"], zip(*rows, strict=True), strict=True)}
     there = set(table["body"].tolist())
-    numbers = {name: number for number, name in enumerate(name for name in known if name in there)}
+    numbered = tuple(name for name in known if name in there)
+    return numbered, bodies_by_state(table, numbered, path)
+
+
+def bodies_by_state(table: Mapping[str, NDArray[Any]], names: Sequence[str], path: Path) -> dict[str, FloatArray]:
+    """The ``table`` of bodies of a ``path`` by column (s, n), of the bodies of these ``names`` (n); where one is not
+    there it has no numbers, and an infinite gap. Raises OutputError for another body, and for two rows of one."""
+    numbers = {name: number for number, name in enumerate(names)}
+    there = set(table["body"].tolist())
     if there - numbers.keys():
         raise unreadable(path, f"a body {min(there - numbers.keys())!r} that has not entered")
     body = np.array([numbers[name] for name in table["body"].tolist()])
     _, first, state = np.unique(table["step"], return_index=True, return_inverse=True)
-    if len(np.unique(state * len(numbers) + body)) < len(rows):
+    if len(np.unique(state * len(numbers) + body)) < len(body):
         raise unreadable(path, "two rows of a body in a state")
     found = {}
     for name in (name for name in table if KINDS.get(name) is not str):
         found[name] = np.full((len(first), len(numbers)), np.inf if name == "gap" else np.nan)
         found[name][state, body] = table[name]
     shared = {name: np.repeat(table[name][first].astype(float)[:, None], len(numbers), axis=1) for name in _STAMP}
-    return tuple(numbers), found | shared
+    return found | shared
 
 
 def _whole_states(

@@ -10,6 +10,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.mechanics.suspension import coordination, touching_pairs
 from rigidfluid.post.statistics.blocks import Mean, mean
 from rigidfluid.post.statistics.contact_rows import ContactRows
 
@@ -39,7 +40,7 @@ def contact_network(rows: ContactRows) -> ContactNetwork:
         return mean(np.array([figure(samples.count, *one) for one in by_state]))
 
     return ContactNetwork(
-        coordination=over_states(_coordination),
+        coordination=over_states(coordination),
         touching=over_states(_touching),
         largest=over_states(_largest),
         stress=mean(rows.selected(pairs).stress(force[pairs])),
@@ -47,25 +48,15 @@ def contact_network(rows: ContactRows) -> ContactNetwork:
     )
 
 
-def _coordination(count: int, a: IntArray, b: IntArray) -> float:
-    return 2.0 * len(_pairs(a, b)) / count
-
-
 def _touching(count: int, a: IntArray, b: IntArray) -> float:
     return len(np.setdiff1d(np.concatenate([a, b]), [-1])) / count
 
 
 def _largest(count: int, a: IntArray, b: IntArray) -> float:
-    pairs = _pairs(a, b)
+    pairs = touching_pairs(a, b)
     graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
     _, group = connected_components(graph, directed=False)
     return float(np.bincount(group).max()) / count
-
-
-def _pairs(a: IntArray, b: IntArray) -> IntArray:
-    """Pairs of bodies that touch, (p, 2), each once however many contacts it has."""
-    both = (a >= 0) & (b >= 0)
-    return np.unique(np.sort(np.stack([a[both], b[both]], axis=1), axis=1), axis=0)
 
 
 def _on_walls(rows: ContactRows, force: FloatArray) -> dict[str, Mean]:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.mechanics.suspension import contact_stress
 from rigidfluid.post.statistics.samples import Samples
 
 
@@ -46,11 +47,10 @@ class ContactRows(NamedTuple):
     def stress(self, force: FloatArray) -> FloatArray:
         """Stress -Σ F (x_a - x_b)ᵀ/V of a ``force`` (c, d) on a of each contact between bodies, in each state (s, d, d)
         [force/length^(d-1)]."""
-        position, count = self.samples.position, self.samples.dimension
+        position, volume = self.samples.position, self.samples.volume
         arm = position[self.state, self.a] - position[self.state, self.b] - self.shifts()
-        stress = np.zeros((len(self.samples.step), count, count))
-        np.add.at(stress, self.state, -force[:, :, None] * arm[:, None, :] / self.samples.volume)
-        return stress
+        states = [self.state == state for state in range(len(self.samples.step))]
+        return np.array([contact_stress(force[here], arm[here], volume) for here in states])
 
 
 def contact_rows(samples: Samples, table: Mapping[str, NDArray[Any]]) -> ContactRows:

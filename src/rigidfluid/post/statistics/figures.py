@@ -9,7 +9,7 @@ import numpy as np
 from rigidfluid.post.reports.units import Units
 from rigidfluid.post.statistics.blocks import Mean
 from rigidfluid.post.statistics.contact_network import ContactNetwork
-from rigidfluid.post.statistics.motion import Diffusion
+from rigidfluid.post.statistics.diffusion import Diffusion
 from rigidfluid.post.statistics.pair_distribution import PairDistribution
 from rigidfluid.post.statistics.profiles import Profile
 from rigidfluid.post.statistics.samples import Samples
@@ -58,6 +58,8 @@ class Statistics(NamedTuple):
                 "place": layers.place.tolist(),
                 "fraction": layers.fraction.to_list(),
                 "velocity": layers.velocity.to_list(),
+                "fluid_velocity": None if layers.fluid is None else layers.fluid.to_list(),
+                "mixture_velocity": None if layers.mixture is None else layers.mixture.to_list(),
             },
             "contacts": {
                 "coordination": contacts.coordination.to_list(),

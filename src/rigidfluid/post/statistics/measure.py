@@ -5,28 +5,35 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import matplotlib
 
+from rigidfluid.core.mechanics.suspension import mean_gap, mean_velocity, velocity_fluctuations
 from rigidfluid.core.output.disk import replace_text, writing
+from rigidfluid.core.output.history import History
 from rigidfluid.core.output.tables import table_path
 from rigidfluid.errors import OutputError
 from rigidfluid.post.reports.results import Results, read_results
+from rigidfluid.post.reports.results_in_memory import results_of
 from rigidfluid.post.reports.style import STYLE, save
 from rigidfluid.post.run_results import load_results
 from rigidfluid.post.statistics.blocks import mean
 from rigidfluid.post.statistics.contact_network import contact_network
 from rigidfluid.post.statistics.contact_rows import contact_rows
 from rigidfluid.post.statistics.contact_stresses import contact_stresses
+from rigidfluid.post.statistics.diffusion import diffusion
 from rigidfluid.post.statistics.figures import Statistics
-from rigidfluid.post.statistics.motion import diffusion, mean_velocity, velocity_fluctuations
+from rigidfluid.post.statistics.fluid_layers import OUTPUTS, fluid_layers
 from rigidfluid.post.statistics.pair_distribution import pair_distribution
 from rigidfluid.post.statistics.plot import statistics_plot
-from rigidfluid.post.statistics.profiles import profile
+from rigidfluid.post.statistics.profiles import LAYERS, profile
 from rigidfluid.post.statistics.samples import SAMPLES, samples_of
 from rigidfluid.post.statistics.structure_factor import structure_factor
 from rigidfluid.post.statistics.suspension_stress import suspension_stress
+
+if TYPE_CHECKING:
+    from rigidfluid.core.run.simulation import Simulation
 
 
 def statistics(
@@ -38,7 +45,7 @@ def statistics(
     ``across`` an axis. Raises OutputError for a folder that cannot be read, and for too few bodies or states.
     """
     results = read_results(folder, motion_only=True)
-    found = measured(results, tables_of(Path(folder)), since, until, across)
+    found = measured(results, tables_of(load_results(folder)), since, until, across)
     figures = Path(folder) / "statistics.json"
     with matplotlib.rc_context(STYLE), writing(figures):
         text = json.dumps(found.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
@@ -47,10 +54,48 @@ def statistics(
     return found, [figures, *plots]
 
 
-def tables_of(folder: Path) -> dict[str, dict[str, Any]]:
+def measure_statistics(
+    run: Simulation | History, since: float | None = None, until: float | None = None, across: str = "y"
+) -> Statistics:
+    """Measure the statistics of the bodies of a run, in memory or from its folder; nothing is written.
+
+    A mean of a figure f is Σ f/s over s states at even times, at most 200, and its standard error that of blocks of
+    states.
+
+    Parameters
+    ----------
+    run : Simulation or History
+        A simulation, also while it goes on, as an observer gets it; or what `run` or `load_results` has returned.
+    since, until : float, optional
+        First and last time of the means; from a third of the run until now if not given [time].
+    across : str
+        Axis across which the profiles are, ``x``, ``y`` or ``z``; those of the fluid want a run that writes fields to
+        a folder.
+
+    Returns
+    -------
+    Statistics
+        Means with their standard errors; ``to_dict()`` gives those of ``statistics.json``.
+
+    Raises
+    ------
+    OutputError
+        If there are fewer than two states or bodies that move, a body enters or leaves meanwhile, the times or the axis
+        are not there, or a history does not know its bodies: that of a model made in Python, or of a run that goes on.
+
+    Notes
+    -----
+    Flyvbjerg & Petersen, J. Chem. Phys. 91 (1989) 461, doi:10.1063/1.457480.
+    """
+    tables = tables_of(run if isinstance(run, History) else run.history)
+    return measured(results_of(run), tables, since, until, across)
+
+
+def tables_of(history: History) -> dict[str, dict[str, Any]]:
     """Tables of contacts and stresslets of a run; nothing of one that an earlier version has not written."""
-    run, names = load_results(folder), ("contacts", "stresslets")
-    return {name: run.table(name) if name == names[0] or table_path(folder, name).exists() else {} for name in names}
+    folder, names = history.folder, ("contacts", "stresslets")
+    written = [name for name in names if folder is None or name == names[0] or table_path(folder, name).exists()]
+    return {name: history.table(name) if name in written else {} for name in names}
 
 
 def measured(
@@ -60,11 +105,13 @@ def measured(
     until: float | None = None,
     across: str = "y",
     most: int = SAMPLES,
+    outputs: int = OUTPUTS,
 ) -> Statistics:
-    """Statistics of these results, with their ``tables`` of contacts and stresslets, in at most so many states."""
+    """Statistics of these results, with their ``tables`` of contacts and stresslets, in at ``most`` so many states; the
+    fluid's at most at so many ``outputs``."""
     if across not in list(results.axes):
         raise OutputError("--across", across, f"one of {', '.join(results.axes)}", "Name an axis.")
-    samples = samples_of(results, since, until, most)
+    samples, axis = samples_of(results, since, until, most), results.axes.index(across)
     rows, stresslets = contact_rows(samples, tables["contacts"]), tables["stresslets"]
     stress = None
     if stresslets:
@@ -73,13 +120,13 @@ def measured(
     return Statistics(
         results.units,
         samples,
-        mean(samples.mean_gap),
-        mean_velocity(samples),
-        velocity_fluctuations(samples),
+        mean(mean_gap(samples.gap)),
+        mean(mean_velocity(samples.velocity)),
+        mean(velocity_fluctuations(samples.velocity)),
         pair_distribution(samples),
         structure_factor(samples),
         diffusion(samples),
-        profile(samples, results.axes.index(across)),
+        profile(samples, axis, fluid_layers(results, samples, axis, LAYERS, outputs)),
         contact_network(rows),
         stress,
         results.system.fluid is not None,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -50,12 +52,15 @@ def _draw_layers(layers: Axes, speeds: Axes, found: Statistics) -> None:
     across = f"{'xyz'[profile.axis]} [length]"
     layers.errorbar(profile.fraction.value, profile.place, xerr=np.nan_to_num(profile.fraction.error), color=BLUE)
     layers.set(xlabel="share of bodies in a layer [1]", ylabel=across)
-    for name, curve, error, colour in zip(
-        "xyz", profile.velocity.value.T, profile.velocity.error.T, PALETTE, strict=False
-    ):
-        speeds.errorbar(curve, profile.place, xerr=np.nan_to_num(error), color=colour, label=name)
-    speeds.set(xlabel="velocity of bodies [length/time]", ylabel=across)
-    speeds.legend()
+    kinds = {"bodies": (profile.velocity, "-"), "fluid": (profile.fluid, "--"), "both": (profile.mixture, ":")}
+    for kind, (velocity, line) in kinds.items():
+        if velocity is not None:
+            for name, curve, error, colour in zip("xyz", velocity.value.T, velocity.error.T, PALETTE, strict=False):
+                label, off = f"{name}, {kind}", np.nan_to_num(error)
+                speeds.errorbar(curve, profile.place, xerr=off, color=colour, linestyle=line, label=label)
+    speeds.set(xlabel="velocity [length/time]", ylabel=across)
+    above: dict[str, Any] = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0)}
+    speeds.legend(ncols=3, fontsize=6.5, columnspacing=1.0, handlelength=2.2, **above)
 
 
 def _draw_figures(axes: Axes, found: Statistics) -> None:

@@ -1,4 +1,4 @@
-"""Profiles across the domain: how much of each layer is solid, and how fast bodies are there."""
+"""Profiles across the domain: how much of each layer is solid, and how fast bodies and fluid are there."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.mechanics.rigid import cross
 from rigidfluid.post.statistics.blocks import Mean, mean
+from rigidfluid.post.statistics.fluid_layers import FluidLayers
 from rigidfluid.post.statistics.samples import Samples
 
 LAYERS = 20
@@ -16,27 +18,49 @@ LAYERS = 20
 
 class Profile(NamedTuple):
     """Layers across an axis: their middles ``place`` (l,) [length], the ``fraction`` of bodies in them (l,) [1], and
-    the mean ``velocity`` (l, d) of that part of bodies [length/time], not a number where there are none."""
+    the mean ``velocity`` (l, d) of that part of bodies [length/time], not a number where there are none; with fields
+    those of the ``fluid`` and of both, the ``mixture``, with bodies that do not move."""
 
     axis: int
     place: FloatArray
     fraction: Mean
     velocity: Mean
+    fluid: Mean | None
+    mixture: Mean | None
 
 
-def profile(samples: Samples, axis: int) -> Profile:
+def profile(samples: Samples, axis: int, fluid: FluidLayers | None) -> Profile:
     """Profile across ``axis``, with bodies as balls of their volume, cut by the layers."""
     edges = np.linspace(samples.lower[axis], samples.upper[axis], LAYERS + 1)
-    inside = np.sum([_inside(samples, edges, place) for place in _places(samples, axis)], axis=0)
-    layer = samples.volume / LAYERS
-    moved = np.einsum("sln,snd->sld", inside, samples.velocity)
-    solid = inside.sum(axis=2)
-    share = solid.mean(axis=0)[:, None]
-    velocity = np.divide(moved.mean(axis=0), share, out=np.full(moved.shape[1:], np.nan), where=share > 0.0)
-    off = np.divide(
-        mean(moved - velocity * solid[..., None]).error, share, out=np.full_like(velocity, np.nan), where=share > 0.0
-    )
-    return Profile(axis, 0.5 * (edges[1:] + edges[:-1]), mean(solid / layer), Mean(velocity, off))
+    solid, moved = _solid_layers(samples, edges, axis)
+    share = mean(solid / (samples.volume / LAYERS))
+    place, velocity = 0.5 * (edges[1:] + edges[:-1]), _velocity(moved, solid)
+    if fluid is None:
+        return Profile(axis, place, share, velocity, None, None)
+    then, moved_then = _solid_layers(fluid.samples, edges, axis)
+    mixture = _velocity(fluid.moved + moved_then, fluid.volume + then)
+    return Profile(axis, place, share, velocity, _velocity(fluid.moved, fluid.volume), mixture)
+
+
+def _velocity(moved: FloatArray, volume: FloatArray) -> Mean:
+    """Velocity (l, d) of what has a ``volume`` (s, l), the mean over all of it, by the integral ``moved`` (s, l, d) of
+    its velocity; not a number where there is nothing [length/time]."""
+    whole = volume.mean(axis=0)[:, None]
+    velocity = np.divide(moved.mean(axis=0), whole, out=np.full(moved.shape[1:], np.nan), where=whole > 0.0)
+    off = mean(moved - velocity * volume[..., None]).error
+    return Mean(velocity, np.divide(off, whole, out=np.full_like(velocity, np.nan), where=whole > 0.0))
+
+
+def _solid_layers(samples: Samples, edges: FloatArray, axis: int) -> tuple[FloatArray, FloatArray]:
+    """Volume (s, l) of the bodies between the edges [length^d], and the integral (s, l, d) of the velocity U + ω × r of
+    their points over it [length^(d+1)/time]."""
+    turning = cross(samples.angular_velocity, np.broadcast_to(np.eye(samples.dimension)[axis], samples.velocity.shape))
+    volume, moved = np.zeros((len(samples.time), LAYERS)), np.zeros((len(samples.time), LAYERS, samples.dimension))
+    for place in _places(samples, axis):
+        inside, moment = _slices(samples, edges, place)
+        volume += inside.sum(axis=2)
+        moved += np.einsum("sln,snd->sld", inside, samples.velocity) + np.einsum("sln,snd->sld", moment, turning)
+    return volume, moved
 
 
 def _places(samples: Samples, axis: int) -> Sequence[FloatArray]:
@@ -49,11 +73,13 @@ def _places(samples: Samples, axis: int) -> Sequence[FloatArray]:
     return [first - length, first, first + length]
 
 
-def _inside(samples: Samples, edges: FloatArray, place: FloatArray) -> FloatArray:
-    """Volume of each body between the edges (s, l, n) [length^d]."""
-    heights = (edges[:, None] - place[:, None, :]) / samples.radius
-    below = _share_below(np.clip(heights, -1.0, 1.0), samples.dimension) * samples.body_volume
-    return np.diff(below, axis=1)
+def _slices(samples: Samples, edges: FloatArray, place: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Volume of each body between the edges (s, l, n) [length^d], and its first moment about the body's centre
+    [length^(d+1)]."""
+    heights = np.clip((edges[:, None] - place[:, None, :]) / samples.radius, -1.0, 1.0)
+    below = _share_below(heights, samples.dimension) * samples.body_volume
+    moment = _moment_below(heights, samples.dimension) * samples.radius ** (samples.dimension + 1)
+    return np.diff(below, axis=1), np.diff(moment, axis=1)
 
 
 def _share_below(height: FloatArray, dimension: int) -> FloatArray:
@@ -61,3 +87,9 @@ def _share_below(height: FloatArray, dimension: int) -> FloatArray:
     if dimension == 3:
         return np.asarray(0.25 * (2.0 + 3.0 * height - height**3))
     return np.asarray((0.5 * np.pi + np.arcsin(height) + height * np.sqrt(1.0 - height**2)) / np.pi)
+
+
+def _moment_below(height: FloatArray, dimension: int) -> FloatArray:
+    """First moment of a unit ball's part below a ``height``, from -1 to 1."""
+    across = 1.0 - height**2
+    return np.asarray(-0.25 * np.pi * across**2 if dimension == 3 else -2.0 / 3.0 * across**1.5)

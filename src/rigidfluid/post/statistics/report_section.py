@@ -10,6 +10,7 @@ from rigidfluid.errors import OutputError
 from rigidfluid.post.reports.html import grid
 from rigidfluid.post.reports.report import Section
 from rigidfluid.post.reports.results import Results
+from rigidfluid.post.run_results import load_results
 from rigidfluid.post.statistics.figures import told
 from rigidfluid.post.statistics.measure import measured, tables_of
 from rigidfluid.post.statistics.plot import statistics_plot
@@ -20,16 +21,18 @@ FEWEST = 8
 """Fewest bodies of a run without stresslets whose report has statistics."""
 MOST = 40_000
 """Most places of bodies, over all states, that a report looks at."""
+OUTPUTS = 10
+"""Most output times whose fields it reads for them."""
 _WORDS = "Structure, motion and layers of the bodies, means from a third of the run on, with their standard errors."
 
 
 def section(results: Results) -> Section:
     """Statistics from a third of the run on; nothing for few bodies without stresslets, or for one."""
-    tables, count = tables_of(results.folder), int(np.sum(~results.system.prescribed))
+    tables, count = tables_of(load_results(results.folder)), int(np.sum(~results.system.prescribed))
     if count < (LEAST if len(tables["stresslets"].get("step", ())) else FEWEST):
         return Section()
     try:
-        found = measured(results, tables, most=max(1, MOST // count))
+        found = measured(results, tables, most=max(1, MOST // count), outputs=OUTPUTS)
     except OutputError as error:
         return Section(["<h2>Statistics</h2>", f'<p class="note">{escape(f"None: {error}")}</p>'])
     parts = ["<h2>Statistics</h2><ul>", *(f"<li>{escape(line)}</li>" for line in found.lines), "</ul>"]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
 from rigidfluid.core.model.system import System
 from rigidfluid.errors import OutputError
@@ -24,15 +24,17 @@ class Samples:
     """Bodies that move, n of them, in s states.
 
     ``step`` (s,) numbers of the states; ``time`` (s,) [time]; ``position`` and ``velocity`` (s, n, d) [length,
-    length/time]; ``gap`` (s, n), of each body to its nearest surface [length]; ``radius`` (n,) of balls of the same
-    volume [length]; ``name`` of each body; ``lower`` and ``upper`` (d,), corners of the domain [length]; ``volume`` of
-    the domain with bodies [length^d]; ``period`` (d,) along each axis, infinite between walls [length].
+    length/time]; ``angular_velocity`` (s, n, k) [rad/time]; ``gap`` (s, n), of each body to its nearest surface
+    [length]; ``radius`` (n,) of balls of the same volume [length]; ``name`` of each body; ``lower`` and ``upper`` (d,),
+    corners of the domain [length]; ``volume`` of the domain with bodies [length^d]; ``period`` (d,) along each axis,
+    infinite between walls [length].
     """
 
     step: FloatArray
     time: FloatArray
     position: FloatArray
     velocity: FloatArray
+    angular_velocity: FloatArray
     gap: FloatArray
     radius: FloatArray
     name: tuple[str, ...]
@@ -72,14 +74,6 @@ class Samples:
         return np.asarray(np.pi * self.radius**2 if self.dimension == 2 else 4.0 / 3.0 * np.pi * self.radius**3)
 
     @property
-    def mean_gap(self) -> FloatArray:
-        """Mean gap over the bodies that have something near (s,), not a number where none has [length]."""
-        known = np.isfinite(self.gap)
-        count = known.sum(axis=1)
-        total = np.where(known, self.gap, 0.0).sum(axis=1)
-        return np.asarray(np.divide(total, count, out=np.full(len(count), np.nan), where=count > 0))
-
-    @property
     def fraction(self) -> float:
         """Volume of the bodies over that of the domain [1]."""
         return float(self.body_volume.sum() / self.volume)
@@ -110,16 +104,26 @@ def samples_of(results: Results, since: float | None, until: float | None, most:
         found = f"{len(rows)} states and {len(moving)} bodies that move"
         remedy = "Choose a longer time, or a run of more bodies."
         raise OutputError("statistics", found, f"at least {LEAST} of each", remedy)
+    return samples_at(results, rows, moving)
+
+
+def samples_at(results: Results, rows: IntArray, bodies: IntArray) -> Samples:
+    """Samples of some ``bodies`` (n,) in the states of these ``rows`` (s,), by number; raises OutputError where periods
+    are along no axis."""
     system = results.system
     lower, upper = system.domain.extent
+    position, velocity, turning = (
+        results.quantity(name)[rows][:, bodies] for name in ("position", "velocity", "angular_velocity")
+    )
     return Samples(
         step=results.bodies["step"][rows, 0],
         time=results.time[rows],
-        position=results.quantity("position")[rows][:, moving],
-        velocity=results.quantity("velocity")[rows][:, moving],
-        gap=results.bodies["gap"][rows][:, moving],
-        radius=np.array([equal_volume_radius(system.bodies[body]) for body in moving]),
-        name=tuple(results.names[body] for body in moving),
+        position=position,
+        velocity=velocity,
+        angular_velocity=turning,
+        gap=results.bodies["gap"][rows][:, bodies],
+        radius=np.array([equal_volume_radius(system.bodies[body]) for body in bodies]),
+        name=tuple(results.names[body] for body in bodies),
         lower=np.asarray(lower),
         upper=np.asarray(upper),
         volume=float(system.domain.volume),

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.mechanics.shear import Shear, shear_of_walls
+from rigidfluid.core.mechanics.suspension import symmetric
 from rigidfluid.core.model.system import System
 from rigidfluid.post.statistics.blocks import Mean, mean
 from rigidfluid.post.statistics.samples import Samples
@@ -69,7 +70,7 @@ def suspension_stress(
     known = np.isfinite(by_fluid).all(axis=(1, 2))
     if not known.any():
         return None
-    causes = {"fluid": by_fluid} | {cause: _symmetric(stress) for cause, stress in by_contacts.items()}
+    causes = {"fluid": by_fluid} | {cause: symmetric(stress) for cause, stress in by_contacts.items()}
     causes["total"] = np.sum(list(causes.values()), axis=0)
     shear = shear_of_walls(system)
     figures = {cause: _figures(stress[known], shear) for cause, stress in causes.items()}
@@ -78,24 +79,16 @@ def suspension_stress(
     return SuspensionStress(figures, None if shear is None else shear.rate, relative)
 
 
-def _symmetric(stress: FloatArray) -> FloatArray:
-    return 0.5 * (stress + stress.swapaxes(1, 2))
-
-
 def _figures(stress: FloatArray, shear: Shear | None) -> StressFigures:
     """Figures of one cause by its ``stress`` (s, d, d)."""
     trace = np.trace(stress, axis1=1, axis2=2)
     pressure = mean(-trace / stress.shape[1])
     if shear is None:
         return StressFigures(mean(stress), pressure, None, None)
-
-    def part(one: FloatArray, other: FloatArray) -> FloatArray:
-        return np.asarray(np.einsum("i,sij,j->s", one, stress, other))
-
-    along, across = part(shear.along, shear.along), part(shear.across, shear.across)
+    along, across = (shear.part(way, way, stress) for way in (shear.along, shear.across))
     differences = np.stack([along - across, 2.0 * across + along - trace], axis=1)[:, : stress.shape[1] - 1]
-    viscosity = None if shear.stress is None else mean(part(shear.along, shear.across) / shear.stress)
-    return StressFigures(mean(stress), pressure, mean(differences), viscosity)
+    viscosity = shear.added_viscosity(stress)
+    return StressFigures(mean(stress), pressure, mean(differences), None if viscosity is None else mean(viscosity))
 
 
 def _sums(samples: Samples, table: Mapping[str, NDArray[Any]]) -> FloatArray:

@@ -15,9 +15,10 @@ from scipy import sparse
 
 from rigidfluid.core.fluid.conduction import Inside
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.quadratic_cells import quadratic_basis
 from rigidfluid.core.mesh.location import CellFinder
 from rigidfluid.taylor_hood.elements.facet_integrals import area_at_points
-from rigidfluid.taylor_hood.elements.location import located, quadratic_basis
+from rigidfluid.taylor_hood.elements.location import located
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 
 _POINTS = {2: 8, 3: 4}

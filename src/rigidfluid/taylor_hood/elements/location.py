@@ -6,8 +6,9 @@ import numpy as np
 import scipy
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.geometry.quadratic_cells import quadratic_basis
 from rigidfluid.core.mesh.location import INSIDE, CellFinder, move_inside
-from rigidfluid.taylor_hood.elements.numbering import EDGES, Numbering
+from rigidfluid.taylor_hood.elements.numbering import Numbering
 
 _ITERATIONS, _ENOUGH = 30, 1e-14
 _BEYOND = 0.2
@@ -84,11 +85,3 @@ def barycentric(points: FloatArray, simplices: IntArray, targets: FloatArray) ->
     edges = np.moveaxis(corners[..., 1:, :] - corners[..., :1, :], -1, -2)
     rest = np.linalg.solve(edges, (targets - corners[..., 0, :])[..., None])[..., 0]
     return np.concatenate([1.0 - rest.sum(axis=-1, keepdims=True), rest], axis=-1)
-
-
-def quadratic_basis(coordinates: FloatArray) -> FloatArray:
-    """The P2 basis (N, b) at barycentric ``coordinates`` (N, d+1): vertices, then edges in the order of `EDGES`."""
-    edges = EDGES[coordinates.shape[1] - 1]
-    vertices = coordinates * (2.0 * coordinates - 1.0)
-    middles = [4.0 * coordinates[:, i] * coordinates[:, j] for i, j in edges]
-    return np.column_stack([vertices, *middles])

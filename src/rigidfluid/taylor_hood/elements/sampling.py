@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
+from rigidfluid.core.geometry.quadratic_cells import quadratic_basis
 from rigidfluid.core.mesh.location import CellFinder
 from rigidfluid.core.model.types import Mesh
-from rigidfluid.taylor_hood.elements.location import barycentric, located, quadratic_basis
+from rigidfluid.taylor_hood.elements.location import barycentric, located
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 
 

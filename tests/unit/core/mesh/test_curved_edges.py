@@ -14,6 +14,7 @@ from scipy.spatial import Delaunay
 
 from rigidfluid.backends.scikit_fem import ScikitFem
 from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
+from rigidfluid.core.geometry.quadratic_cells import quadratic_basis
 from rigidfluid.core.mesh.adaptation.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.distribution import partition, parts_of, whole
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
@@ -26,7 +27,7 @@ from rigidfluid.core.mesh.topology import boundary_facets, orient
 from rigidfluid.core.model.types import CurvedEdges, Mesh, Pose
 from rigidfluid.core.run.simulation import Simulation
 from rigidfluid.domains.box import Box, BoxOptions
-from rigidfluid.taylor_hood.elements.location import locate_on_curves, quadratic_basis
+from rigidfluid.taylor_hood.elements.location import locate_on_curves
 from rigidfluid.taylor_hood.elements.numbering import Numbering
 
 

@@ -136,6 +136,7 @@ def test_each_rank_keeps_its_part_and_the_root_what_is_there_once(tmp_path):
             "driving.csv",
             "stresslets.csv",
             "walls.csv",
+            "statistics.csv",
             "mesh_error.csv",
             "sensitivities.csv",
             "error_estimates.csv",

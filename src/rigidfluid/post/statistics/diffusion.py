@@ -1,4 +1,4 @@
-"""Motion of bodies: mean velocity, fluctuations, and diffusion."""
+"""Diffusion of bodies."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.post.statistics.blocks import Mean, mean
 from rigidfluid.post.statistics.samples import Samples
 
 LONGEST = 0.5
@@ -21,16 +20,6 @@ class Diffusion(NamedTuple):
     lag: FloatArray
     displacement: FloatArray
     coefficient: FloatArray
-
-
-def mean_velocity(samples: Samples) -> Mean:
-    """Velocity of the bodies (d,), mean over all [length/time]."""
-    return mean(samples.velocity.mean(axis=1))
-
-
-def velocity_fluctuations(samples: Samples) -> Mean:
-    """Standard deviation (d,) of the bodies' velocities from their mean at each time [length/time]."""
-    return mean(samples.velocity.std(axis=1))
 
 
 def diffusion(samples: Samples) -> Diffusion:
