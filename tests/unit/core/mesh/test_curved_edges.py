@@ -13,8 +13,8 @@ from mesh_tools import ball, ellipsoid, upright
 from scipy.spatial import Delaunay
 
 from rigidfluid.backends.scikit_fem import ScikitFem
-from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.geometry.quadratic_cells import quadratic_basis
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.adaptation.mesh_motion import MeshMotion
 from rigidfluid.core.mesh.distribution import partition, parts_of, whole
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
