@@ -6,14 +6,17 @@ from gases import assert_same, both_ways, gas
 
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.contact.laws.ball_law import ball_law
+from rigidfluid.core.contact.laws.friction import Friction, Rubbing
 from rigidfluid.core.contact.pairs.near_pairs import NearPairs
 from rigidfluid.core.contact.path import substep_path
 from rigidfluid.core.contact.path.spring_substeps import spring_substeps
 from rigidfluid.core.coupling.schemes import scheme_of
+from rigidfluid.core.mechanics.coulomb import TurningFriction
 from rigidfluid.core.output.checkpoint import read_checkpoint
 from rigidfluid.core.run.run import run
 from rigidfluid.core.run.simulation import Simulation
-from rigidfluid.errors import StepRejected
+from rigidfluid.errors import PluginError, StepRejected
+from rigidfluid.forces.normal import NormalLaw
 
 DASHPOT = {"law": "spring-dashpot", "stiffness": 8e3, "restitution": 0.8, "friction": 0.3, "tangential_stiffness": 2e3}
 TURNING = {"rolling_friction": 0.1, "twisting_friction": 0.05}
@@ -153,3 +156,30 @@ def test_a_law_around_another_by_someone_else_is_asked_itself():
     weaker = Weaker.__new__(Weaker)
     vars(weaker).update(vars(law))
     assert ball_law(weaker) is None
+
+
+def rubbing(law):
+    """A law with friction around it."""
+    return Friction(law, Rubbing(0.3, 100.0, 1.0, 0.02, TurningFriction(0.0, 0.0)))
+
+
+def test_dampers_of_the_law_itself_are_no_dashpots_of_springs():
+    class Damped(NormalLaw):
+        def pair_formula(self):
+            return super().pair_formula()
+
+    law = Damped(NormalLaw.Options(epsilon=1e-3), 0.05)
+    assert ball_law(rubbing(law)) is not None
+    law.dissipative = True
+    assert ball_law(rubbing(law)) is None
+
+
+def test_parameters_of_other_contacts_are_refused():
+    class Odd(NormalLaw):
+        def pair_formula(self):
+            return super().pair_formula()._replace(each=lambda contacts: np.ones((len(contacts) + 1, 3)))
+
+    known = ball_law(rubbing(Odd(NormalLaw.Options(epsilon=1e-3), 0.05)))
+    contacts = Simulation(gas(LAWS["auto"], 2, 2, 40), None, False).state.contacts
+    with pytest.raises(PluginError, match=r"formula .*parameters of shape \(\d+, 3\)"):
+        known.parameters(contacts)

@@ -14,6 +14,7 @@ from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.pair_formula import PairFormula, PairSprings, own_formula
 from rigidfluid.core.model.types import Contacts
 from rigidfluid.core.model.wrapped_law import WrappedLaw, bare, layer
+from rigidfluid.errors import PluginError
 
 Cubics = tuple[FloatArray, FloatArray, FloatArray]
 
@@ -32,10 +33,17 @@ class BallLaw(NamedTuple):
     excess: Cubics
 
     def parameters(self, contacts: Contacts) -> FloatArray:
-        """Parameters of the formula in each contact, (m, p), or in all, (1, p)."""
+        """Parameters of the formula in each contact, (m, p), or in all, (1, p); raises PluginError if others are
+        given."""
         formula = self.formula
-        rows = formula.parameters[None] if formula.each is None else formula.each(contacts)
-        return np.ascontiguousarray(rows, dtype=np.float64)
+        if formula.each is None:
+            return formula.parameters[None]
+        rows = np.ascontiguousarray(formula.each(contacts), dtype=np.float64)
+        if rows.ndim != 2 or len(rows) != len(contacts):
+            subject = f"formula {formula.function.__module__}.{formula.function.__qualname__}"
+            remedy = "Give a row of parameters for each contact in PairFormula.each, or None for pair_formula."
+            raise PluginError(subject, f"parameters of shape {rows.shape}", f"shape ({len(contacts)}, p)", remedy)
+        return rows
 
 
 def ball_law(law: ForceLaw) -> BallLaw | None:
@@ -44,6 +52,8 @@ def ball_law(law: ForceLaw) -> BallLaw | None:
     if formula is None or not law.sticking or not _has_known_layers(law):
         return None
     friction, restitution = layer(Friction, law), layer(Restitution, law)
+    if friction is not None and bare(law).dissipative:
+        return None  # dampers of its own along the surfaces are no part of those beside the springs
     springs = _numbers(formula.springs) if friction is None else friction.ball_springs()
     return None if springs is None else BallLaw(formula, springs, _cubics(restitution))
 
@@ -52,8 +62,6 @@ def _has_known_layers(law: ForceLaw) -> bool:
     """Tell whether nothing is around the bare law but friction, and a restitution that is its own."""
     while isinstance(law, WrappedLaw):
         if type(law) not in (Friction, Restitution) or (isinstance(law, Restitution) and law.loss is not None):
-            return False
-        if isinstance(law, Friction) and isinstance(law.law, Friction):
             return False
         law = law.law
     return True
