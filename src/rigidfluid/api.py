@@ -65,7 +65,7 @@ from rigidfluid.core.model.force_law import ForceLaw
 from rigidfluid.core.model.generalised_newtonian import GeneralisedNewtonian
 from rigidfluid.core.model.kinematics import Kinematics
 from rigidfluid.core.model.mechanism import Component, Mechanism
-from rigidfluid.core.model.pair_formula import PairFormula
+from rigidfluid.core.model.pair_formula import PairFormula, PairSprings
 from rigidfluid.core.model.part import Part, PartOptions
 from rigidfluid.core.model.pose_law import PairPoses, PoseLaw
 from rigidfluid.core.model.selected import Selected
@@ -309,6 +309,7 @@ __all__ = [
     "PairForce",
     "PairFormula",
     "PairPoses",
+    "PairSprings",
     "Part",
     "PartOptions",
     "Periodic",

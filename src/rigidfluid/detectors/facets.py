@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import ClassVar
 
 import numpy as np
 
-from rigidfluid.core.contact.pairs.broad_phase import near_pairs, near_walls
+from rigidfluid.core.contact.pairs.broad_phase import near_pairs, rows_of_near_walls
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.geometry.facet_surface import FacetSurface
 from rigidfluid.core.geometry.piece import Piece
@@ -71,6 +71,7 @@ class FacetDetector(Detector):
         self._smooth_contacts = SmoothContacts([bodies[index] for index in smooth], [])
         long = [index for index in smooth if bodies[index].radius is None]
         self._long = np.array(long, dtype=np.int64)
+        self._is_long = np.isin(np.arange(len(self._solids)), self._long)
         closed = [wall for wall in walls if not isinstance(wall.shape, FacetSurface)]
         self._long_contacts = SmoothContacts([bodies[index] for index in long], closed)
 
@@ -99,22 +100,18 @@ class FacetDetector(Detector):
         a, b = near_pairs(position, self._bounds, reach)
         meant = self._faceted[a] | self._faceted[b]
         a, b = a[meant], b[meant]
-        row = {wall.surface: len(self.bodies) + number for number, wall in enumerate(self.walls)}
-        at_walls = [(body, row[wall.surface]) for body, wall in near_walls(position, self._bounds, self.walls, reach)]
-        body, wall = np.array(at_walls, dtype=np.int64).reshape(-1, 2).T
-        meant = self._faceted[wall] | ~np.isin(body, self._long)
+        body, wall = rows_of_near_walls(position, self._bounds, self.walls, reach)
+        wall = wall + len(self.bodies)
+        meant = self._faceted[wall] | ~self._is_long[body]
         body, wall = body[meant], wall[meant]
         size = np.concatenate([np.minimum(self._bounds[a], self._bounds[b]), self._bounds[body]])
         return Pairs(np.concatenate([a, body]), np.concatenate([b, wall]), SPREAD * size)
 
     def _placed(self, pose: Pose) -> Placement:
         """All bodies, and after them the walls."""
-        count, dimension = len(self.walls), pose.position.shape[1]
-        unturned = np.broadcast_to(np.eye(dimension), (count, dimension, dimension))
-        return Placement(
-            np.concatenate([pose.position, np.zeros((count, dimension))]),
-            np.concatenate([rotation_matrices(pose.orientation), unturned]),
-        )
+        placed = pose.position, rotation_matrices(pose.orientation)
+        unmoved = _unmoved(len(self.walls), pose.position.shape[1])
+        return Placement(*(np.concatenate(both) for both in zip(placed, unmoved, strict=True)))
 
     @cached_property
     def _probes(self) -> Probes:
@@ -124,10 +121,11 @@ class FacetDetector(Detector):
     def _further_touches(self, pairs: Pairs, placed: Placement, reach: float, found: Touches) -> Iterator[Touches]:
         """Places besides those of points: on ellipsoids, and of two surfaces of facets between edges that pass each
         other, or, where no corner is inside, that go through facets."""
-        long = np.isin(pairs.a, self._long) | np.isin(pairs.b, self._long)
-        for row in np.flatnonzero(long).tolist():
+        for row in np.flatnonzero(self._is_long[pairs.a] | self._is_long[pairs.b]).tolist():
             yield _touches(row, self._ellipsoid_places(int(pairs.a[row]), int(pairs.b[row]), placed, reach))
         pair = np.flatnonzero(self._faceted[pairs.a] & self._faceted[pairs.b])
+        if len(pair) == 0:
+            return
         least = _least_gaps(found, len(pairs.a))
         span = np.minimum(reach, np.maximum(least, 0.0) + pairs.spread)
         if placed.position.shape[1] == 3:
@@ -190,6 +188,12 @@ class FacetDetector(Detector):
             at_wall=b >= len(self.bodies),
             sign=touches.sign,
         )
+
+
+@lru_cache(maxsize=4)
+def _unmoved(count: int, dimension: int) -> tuple[FloatArray, FloatArray]:
+    """Positions and rotations of so many surfaces that do not move."""
+    return np.zeros((count, dimension)), np.tile(np.eye(dimension), (count, 1, 1))
 
 
 def is_known(shape: Surface) -> bool:

@@ -91,6 +91,8 @@ def _near_boxes(groups: FloatArray, other: PlacedFacets, reach: float) -> BoolAr
 def shallowest_piercing(a: PlacedFacets, b: PlacedFacets) -> Places:
     """The shallowest edge that goes through a facet, if any does, by its deeper end."""
     one, other = _piercing_edges(a, b), _piercing_edges(b, a)
+    if len(one.gap) + len(other.gap) == 0:
+        return one
     turned = other._replace(point_a=other.point_b, point_b=other.point_a, normal=-other.normal)
     both = Places(*(np.concatenate(each) for each in zip(one, turned, strict=True)))
     rows = [int(np.argmax(both.gap))] if len(both.gap) else []
@@ -104,6 +106,9 @@ def _piercing_edges(a: PlacedFacets, b: PlacedFacets) -> Places:
     facets, inside = b.solid.surface.facets, b.local(a.points)
     points, edges = np.concatenate([facets.points, inside]), a.solid.features.all_edges + len(facets.points)
     crossed = crossings(points, edges, b.solid.surface.tree)
+    if len(crossed) == 0:
+        none = np.empty((0, points.shape[1]))
+        return Places(none, none, none, np.empty(0), np.empty(0))
     normal = b.solid.surface.facet_normals[crossed[:, 1]]
     ends = points[edges[crossed[:, 0]]]
     heights = np.einsum("mej,mj->me", ends - points[facets.vertices[crossed[:, 1], :1]], normal)

@@ -69,6 +69,9 @@ class Probes:
         number = {id(target): row for row, target in enumerate(self._targets)}
         self._target = np.array([number.get(id(each), -1) for each in targets], dtype=np.int64)
         self._lower, self._upper = (np.array(each) for each in zip(*map(_box, surfaces), strict=True))
+        with np.errstate(invalid="ignore"):  # endless boxes are only others'
+            self._middle = 0.5 * (self._lower + self._upper)
+            self._half = self._upper - self._middle
 
     def touches(self, pairs: Pairs, placed: Placement, reach: float) -> Touches:
         """Contacts of all ``pairs`` with gaps up to ``reach`` [length]."""
@@ -95,10 +98,11 @@ class Probes:
     def boxes_meet(self, own: IntArray, other: IntArray, placed: Placement, reach: float | FloatArray) -> BoolArray:
         """Tell whether the box around each surface, in the frame of another one, is within ``reach`` of the box around
         that, (K,) each."""
+        if len(own) == 0:
+            return np.zeros(0, dtype=bool)
         turned = np.abs(np.einsum("nki,nkj->nij", placed.rotation[other], placed.rotation[own]))
-        middle = 0.5 * (self._lower[own] + self._upper[own])
-        half = np.einsum("nij,nj->ni", turned, self._upper[own] - middle) + np.reshape(reach, (-1, 1))
-        centre = placed.local(other, placed.lab(own, middle))
+        half = np.einsum("nij,nj->ni", turned, self._half[own]) + np.reshape(reach, (-1, 1))
+        centre = placed.local(other, placed.lab(own, self._middle[own]))
         meet = (centre + half >= self._lower[other]) & (centre - half <= self._upper[other])
         return np.asarray(np.all(meet, axis=1))
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from rigidfluid.core.contact.laws.repulsion import Repulsion, RepulsionOptions
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.model.pair_formula import PairFormula
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts
 from rigidfluid.errors import StepRejected
@@ -54,6 +55,19 @@ class BarrierLaw(Repulsion):
         _refuse_overlap(contacts)
         ratio = self.closeness(contacts) / contacts.gap
         return 2.0 * np.log1p(ratio) + ratio * (4.0 + ratio)
+
+    def pair_formula(self) -> PairFormula | None:
+        """[2 w l + w²/gap]/ε."""
+        return self.formula(_formula)
+
+
+def _formula(parameters, gap, radius_a, radius_b, mass, opening, sliding):  # type: ignore[no-untyped-def]
+    """Energy and force of one contact: it is compiled."""
+    closeness, epsilon = max(parameters[0] - gap, 0.0), parameters[2] if np.isinf(radius_b) else parameters[1]
+    if gap <= 0.0:
+        return np.inf, np.nan, 0.0, 0.0
+    logarithm, ratio = np.log1p(closeness / gap), closeness / gap
+    return closeness**2 * logarithm / epsilon, closeness * (2.0 * logarithm + ratio) / epsilon, 0.0, 0.0
 
 
 def _refuse_overlap(contacts: Contacts) -> None:

@@ -51,7 +51,7 @@ class CentreLaw(Repulsion):
         return closeness * (2.0 * (_touching_distance(contacts) + contacts.gap) - closeness)
 
     def pair_formula(self) -> PairFormula | None:
-        """(R + gap) w²/ε, unless ε is `auto`."""
+        """(R + gap) w²/ε."""
         return self.formula(_formula)
 
 

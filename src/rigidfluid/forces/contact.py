@@ -53,7 +53,7 @@ class ContactPointLaw(Repulsion):
         return closeness * (2.0 * contacts.gap - closeness)
 
     def pair_formula(self) -> PairFormula | None:
-        """gap w²/ε, unless ε is `auto`."""
+        """gap w²/ε."""
         return self.formula(_formula)
 
 

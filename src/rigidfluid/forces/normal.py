@@ -43,7 +43,7 @@ class NormalLaw(Repulsion):
         return 2.0 * self.closeness(contacts)
 
     def pair_formula(self) -> PairFormula | None:
-        """w²/ε, unless ε is `auto`."""
+        """w²/ε."""
         return self.formula(_formula)
 
 

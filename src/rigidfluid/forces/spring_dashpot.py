@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import ClassVar, Self
 
 import numpy as np
@@ -17,7 +18,7 @@ from rigidfluid.core.mechanics.coulomb import (
 )
 from rigidfluid.core.model.contacts import normal_part, tangential_part
 from rigidfluid.core.model.force_law import ForceLaw
-from rigidfluid.core.model.pair_formula import PairFormula
+from rigidfluid.core.model.pair_formula import PairFormula, PairSprings
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Loads, Motion
 
@@ -79,6 +80,17 @@ class SpringDashpotOptions(PartOptions):
         return self
 
 
+@dataclass(frozen=True, slots=True)
+class _Pressed:
+    """Forces in contacts: γ v_n, ``damped`` (m,), the ``bedding`` of springs, ``most``, μ |F_n|, (m,), and that of the
+    dashpots along the surfaces, ``rubbing`` (m, d) [force]."""
+
+    damped: FloatArray
+    bedding: Bedding
+    most: FloatArray
+    rubbing: FloatArray
+
+
 class SpringDashpotLaw(ForceLaw):
     """F = k δ n - γ v_n n - min(μ |F_n|, x γ |v_t|) v_t/|v_t| for δ = range - gap > 0.
 
@@ -121,6 +133,7 @@ class SpringDashpotLaw(ForceLaw):
         super().__init__(options, range, loads)
         self.friction = self.options.friction
         self.sticking = self.options.tangential_stiffness is not None
+        self._pressed: tuple[Contacts, Motion, _Pressed] | None = None
         self._turning = TurningFriction(self.options.rolling_friction, self.options.twisting_friction)
         self.rolling = self.couples = bool(self._turning.keys)
         self.round_option = self._turning.keys[0] if self.rolling else ""
@@ -139,18 +152,23 @@ class SpringDashpotLaw(ForceLaw):
 
     def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
         """Dashpot and friction on ``body_a``, (m, d) [force]."""
-        coefficient, speed, sliding = self._dashpot(contacts, motion)
-        rubbing = self._rubbing(coefficient, self._greatest_friction(contacts, coefficient * speed), sliding)
-        return np.asarray(-(coefficient * speed)[:, None] * contacts.normal - rubbing)
+        pressed = self._pressed_in(contacts, motion)
+        return np.asarray(-pressed.damped[:, None] * contacts.normal - pressed.rubbing)
 
     def pair_formula(self) -> PairFormula | None:
-        """k δ, the dashpot across the surfaces and the friction along them, unless springs are stretched there."""
-        if self.sticking:
-            return None
+        """k δ, the dashpot across the surfaces and the friction along them, or the dashpot there and the springs."""
         options = self.options
         scale = np.nan if options.restitution is None else dashpot_coefficient(options.restitution, 1.0, np.ones(1))[0]
-        numbers = [self.range, options.stiffness, options.damping or 0.0, scale, options.friction]
-        return PairFormula(_formula, np.array([*numbers, options.tangential_damping]))
+        bound = np.inf if self.sticking else options.friction
+        numbers = [self.range, options.stiffness, options.damping or 0.0, scale, bound, options.tangential_damping]
+        return PairFormula(_formula, np.array(numbers), self._pair_springs())
+
+    def _pair_springs(self) -> PairSprings | None:
+        options = self.options
+        if options.tangential_stiffness is None:
+            return None
+        turning = options.rolling_friction, options.twisting_friction
+        return PairSprings(options.tangential_stiffness, options.friction, *turning, options.bounded_dashpot)
 
     def tangential_stiffness(self, contacts: Contacts) -> FloatArray:
         """k_t where the shells overlap, (m,) [force/length]."""
@@ -158,18 +176,32 @@ class SpringDashpotLaw(ForceLaw):
 
     def held_displacement(self, contacts: Contacts, motion: Motion, displacement: FloatArray) -> FloatArray:
         """ξ with -k_t ξ and the dashpot at most μ |F_n|, the nearest along that force, (m, d) [length]."""
-        coefficient, speed, sliding = self._dashpot(contacts, motion)
-        most = self._greatest_friction(contacts, coefficient * speed)
-        rubbing = self._rubbing(coefficient, most, sliding)
-        return held_displacement(self.tangential_stiffness(contacts), rubbing, most, displacement)
+        pressed = self._pressed_in(contacts, motion)
+        return held_displacement(pressed.bedding.stiffness, pressed.rubbing, pressed.most, displacement)
 
     def couple(self, contacts: Contacts, motion: Motion) -> FloatArray:
         """-x γ R² w of what friction resists, at most what it holds, on ``body_a``, (m, k) [force·length]."""
-        return self._turning.couple(contacts, motion, self._bedding(contacts, motion))
+        return self._turning.couple(contacts, motion, self._pressed_in(contacts, motion).bedding)
 
     def held_turning(self, contacts: Contacts, motion: Motion, turning: FloatArray) -> FloatArray:
         """ζ with |k_t ζ + x γ R w| ≤ μ |F_n| along the normal and across it, with its own μ each, (m, k) [length]."""
-        return self._turning.held(contacts, motion, self._bedding(contacts, motion), turning)
+        return self._turning.held(contacts, motion, self._pressed_in(contacts, motion).bedding, turning)
+
+    def _pressed_in(self, contacts: Contacts, motion: Motion) -> _Pressed:
+        """Forces in the contacts, kept for the same records: each substep asks two to four times."""
+        if self._pressed is None or self._pressed[0] is not contacts or self._pressed[1] is not motion:
+            self._pressed = contacts, motion, self._press(contacts, motion)
+        return self._pressed[2]
+
+    def _press(self, contacts: Contacts, motion: Motion) -> _Pressed:
+        overlap = self._overlap(contacts)
+        coefficient = np.where(overlap > 0.0, self._coefficient(motion.mass), 0.0)
+        damped = coefficient * normal_part(motion.velocity, contacts)
+        normal_force = np.abs(self.options.stiffness * overlap - damped)
+        most = self.options.friction * normal_force
+        rubbing = self._rubbing(coefficient, most, tangential_part(motion.velocity, contacts))
+        along = self.options.tangential_damping * coefficient
+        return _Pressed(damped, Bedding(self.tangential_stiffness(contacts), along, normal_force), most, rubbing)
 
     def _rubbing(self, coefficient: FloatArray, most: FloatArray, sliding: FloatArray) -> FloatArray:
         """Force of the dashpots along the surfaces that slide with this velocity (m, d), beside dashpots across them of
@@ -178,24 +210,6 @@ class SpringDashpotLaw(ForceLaw):
         if self.options.bounded_dashpot:
             return sliding_friction(along, most, sliding)
         return np.asarray(along[:, None] * sliding)
-
-    def _bedding(self, contacts: Contacts, motion: Motion) -> Bedding:
-        coefficient, speed, _ = self._dashpot(contacts, motion)
-        along = self.options.tangential_damping * coefficient
-        return Bedding(self.tangential_stiffness(contacts), along, self._normal_force(contacts, coefficient * speed))
-
-    def _dashpot(self, contacts: Contacts, motion: Motion) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """γ (m,) [force·time/length], and the relative velocity along the normal (m,) and across it (m, d)."""
-        coefficient = np.where(self._overlap(contacts) > 0.0, self._coefficient(motion.mass), 0.0)
-        return coefficient, normal_part(motion.velocity, contacts), tangential_part(motion.velocity, contacts)
-
-    def _greatest_friction(self, contacts: Contacts, damped: FloatArray) -> FloatArray:
-        """μ |F_n| with the force ``damped`` (m,) of the dashpot, (m,) [force]."""
-        return self.options.friction * self._normal_force(contacts, damped)
-
-    def _normal_force(self, contacts: Contacts, damped: FloatArray) -> FloatArray:
-        """|F_n| with the force ``damped`` (m,) of the dashpot, (m,) [force]."""
-        return np.abs(self.options.stiffness * self._overlap(contacts) - damped)
 
     def _overlap(self, contacts: Contacts) -> FloatArray:
         return np.maximum(self.range - contacts.gap, 0.0)

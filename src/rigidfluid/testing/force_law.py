@@ -220,12 +220,14 @@ class ForceLawContract:
             np.testing.assert_allclose(law.couple(some, moving), law.couple(contacts, motion)[chosen], rtol=1e-14)
 
     def test_a_formula_gives_the_same_force(self, law: ForceLaw, dimension: int) -> None:
-        """The formula of one contact, if the class has one, gives energy, force and damping, and can be compiled."""
+        """The formula of one contact, if the class has one, gives energy, force, damping and the stiffness of springs,
+        and can be compiled."""
         formula = own_formula(law)
         if formula is None:
             pytest.skip("the law has no formula")
-        assert not law.sticking
-        assert not law.couples
+        springs = formula.springs
+        assert law.sticking == (springs is not None)
+        assert law.couples == (springs is not None and max(springs.rolling, springs.twisting) > 0.0)
         contacts = self._contacts_of(law, (*self._finite_fractions(law), 1.0), dimension)
         motion = _motion(contacts)
         opening = np.sum(motion.velocity * contacts.normal, axis=1)
@@ -238,9 +240,17 @@ class ForceLawContract:
             opening,
             np.linalg.norm(along, axis=1),
         )
-        parts = [formula.function(formula.parameters, *row) for row in zip(*numbers, strict=True)]
+        own = [formula.parameters] * len(contacts) if formula.each is None else formula.each(contacts)
+        parts = [formula.function(*row) for row in zip(own, *numbers, strict=True)]
         _assert_close(np.array(parts)[:, 0], law.energy(contacts))
         push, damping, drag = np.array(parts).T[1:, :, None]
+        if springs is not None:
+            inside = contacts.gap < law.range
+            _assert_close(np.where(inside, springs.stiffness, 0.0), law.tangential_stiffness(contacts))
+            if springs.bounded:
+                drag = np.minimum(
+                    drag, springs.friction * np.abs(push + damping) / np.linalg.norm(along, axis=1)[:, None]
+                )
         _assert_close(push * contacts.normal, law.force(contacts))
         _assert_close(damping * contacts.normal - drag * along, law.damping(contacts, motion))
         assert np.all(drag >= 0.0)

@@ -19,6 +19,12 @@ if TYPE_CHECKING:
 _TOUCHING = 1e-8
 """Distance, over the size of the surface, below which points have no direction from an edge or a corner."""
 
+_FLAT = 1e-12
+"""Height of a point before a facet, over the size of the surface, that is rounding."""
+
+_FEW = 1_000
+"""Number of facets of which each is compared with all points."""
+
 _CORNER = np.array([0, 1, 0, 2, 0, 1, 0])
 """A corner of the vertex, edge or inside of a facet that each number of bits (less one) stands for."""
 
@@ -137,27 +143,29 @@ class FacetSurface(Surface):
 
         facet, bits, weights = self._nearest(points)
         first = self._measured(points, facet, bits, weights)
+        near = np.flatnonzero(first.distance <= reach)
+        nearest = Nearby(near, facet[near], *(column[near] for column in first))
+        if self._is_convex:
+            return nearest
         within = np.where(first.distance > 0, np.minimum(reach, first.distance + spread), 0.0)
         query, others, their_bits, their_weights = facets_within(
             self._points, self.tree, np.ascontiguousarray(points, dtype=float), within
         )
-        face, total = self._faces.numbers[others, their_bits - 1], len(self._faces.facets_at)
-        place, row, times = np.unique(query * total + face, return_index=True, return_counts=True)
+        total, numbers = len(self._faces.facets_at), self._faces.numbers
+        place = query * total + numbers[others, their_bits - 1]
+        beside = np.flatnonzero(place != query * total + numbers[facet, bits - 1][query])
+        if len(beside) == 0:
+            return nearest
+        place, row, times = np.unique(place[beside], return_index=True, return_counts=True)
         # nearer than all around: the nearest point of each facet that meets there is there
-        alone = times == self._faces.facets_at[face[row]]
-        known = np.arange(len(points)) * total + self._faces.numbers[facet, bits - 1]
-        row = row[alone & np.isin(place, known, invert=True)]
+        row = beside[row[times == self._faces.facets_at[place % total]]]
         more = self._measured(
             points[query[row]], others[row], their_bits[row], their_weights[row][:, : points.shape[1]]
         )
         ahead = np.flatnonzero(self._side(points[query[row]], others[row], their_bits[row]) > 0)
         ahead = ahead[_distinct(query[row][ahead], more.foot[ahead], first.foot, _TOUCHING * self._size)]
-        near = np.flatnonzero(first.distance <= reach)
-        return Nearby(
-            np.concatenate([near, query[row][ahead]]),
-            np.concatenate([facet[near], others[row][ahead]]),
-            *(np.concatenate([one[near], other[ahead]]) for one, other in zip(first, more, strict=True)),
-        )
+        further = Nearby(query[row][ahead], others[row][ahead], *(column[ahead] for column in more))
+        return Nearby(*(np.concatenate(both) for both in zip(nearest, further, strict=True)))
 
     def _nearest(self, points: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
         """The nearest facet of each of ``points``, bits of the corners that carry weight there, and the weights."""
@@ -186,6 +194,16 @@ class FacetSurface(Surface):
         """(x - p)·n, (N,), with p a corner that carries weight, as n is across all that the nearest point lies on."""
         corner = self._vertices[facet, _CORNER[bits - 1]]
         return np.asarray(np.einsum("nj,nj->n", points - self._points[corner], self._faces.normals[facet, bits - 1]))
+
+    @cached_property
+    def _is_convex(self) -> bool:
+        """Tell whether it surely encloses a convex body: no point is before a facet, and each place the only nearest
+        one of a point in the fluid."""
+        if self._whole is not None or not 0 < len(self._vertices) <= _FEW:
+            return False
+        used, corner = self._points[np.unique(self._vertices)], self._points[self._vertices[:, 0]]
+        heights = np.einsum("fpj,fj->fp", used[None] - corner[:, None], self.facet_normals)
+        return bool(np.all(heights <= _FLAT * self._size))
 
     @cached_property
     def tree(self) -> Tree:

@@ -126,8 +126,10 @@ def kinetic_energy(mass: FloatArray, inertia: FloatArray, pose: Pose, twist: Twi
 
 
 def _planar_matrices(angle: FloatArray) -> FloatArray:
-    cosine, sine = np.cos(angle), np.sin(angle)
-    return np.stack([np.stack([cosine, -sine], axis=-1), np.stack([sine, cosine], axis=-1)], axis=-2)
+    matrices, sine = np.empty((len(angle), 2, 2)), np.sin(angle)
+    matrices[:, 0, 0] = matrices[:, 1, 1] = np.cos(angle)
+    matrices[:, 0, 1], matrices[:, 1, 0] = -sine, sine
+    return matrices
 
 
 def _quaternion_matrices(quaternion: FloatArray) -> FloatArray:

@@ -89,6 +89,7 @@ class SumOfLaws(ForceLaw):
         self.rolling = any(law.rolling for law in laws)
         self.couples = any(law.couples for law in laws)
         self._shared: tuple[Contacts | None, list[_Share]] = None, []
+        self._parts: tuple[Motion | None, list[tuple[BoolArray, Motion]]] = None, []
 
     @property
     def ranges(self) -> tuple[float, ...]:
@@ -111,7 +112,7 @@ class SumOfLaws(ForceLaw):
         """Σ of what the laws' dampers add on ``body_a``, (m, d) [force]."""
 
         def damping(law: ForceLaw, some: Contacts, chosen: BoolArray) -> FloatArray:
-            return law.damping(some, motion.select(chosen))
+            return law.damping(some, self._part(motion, chosen))
 
         return self._sum(contacts, np.zeros_like(contacts.normal), damping)
 
@@ -119,7 +120,7 @@ class SumOfLaws(ForceLaw):
         """Σ of the laws' couples on ``body_a``, (m, k) [force·length]."""
 
         def couple(law: ForceLaw, some: Contacts, chosen: BoolArray) -> FloatArray:
-            return law.couple(some, motion.select(chosen))
+            return law.couple(some, self._part(motion, chosen))
 
         return self._sum(contacts, np.zeros_like(motion.angular_velocity), couple)
 
@@ -131,7 +132,7 @@ class SumOfLaws(ForceLaw):
         """Displacement of these springs that friction holds, (m, d) [length]."""
 
         def held(law: ForceLaw, some: Contacts, chosen: BoolArray) -> FloatArray:
-            return law.held_displacement(some, motion.select(chosen), displacement[chosen])
+            return law.held_displacement(some, self._part(motion, chosen), displacement[chosen])
 
         return self._sum(contacts, np.zeros_like(displacement), held)
 
@@ -139,7 +140,7 @@ class SumOfLaws(ForceLaw):
         """Displacement of these springs by rolling and twisting that friction holds, (m, k) [length]."""
 
         def held(law: ForceLaw, some: Contacts, chosen: BoolArray) -> FloatArray:
-            return law.held_turning(some, motion.select(chosen), turning[chosen])
+            return law.held_turning(some, self._part(motion, chosen), turning[chosen])
 
         return self._sum(contacts, np.zeros_like(turning), held)
 
@@ -149,6 +150,16 @@ class SumOfLaws(ForceLaw):
         for interaction, some, chosen in self._shares(contacts):
             total[chosen] += asked(interaction.law, some, chosen)
         return total
+
+    def _part(self, motion: Motion, chosen: BoolArray) -> Motion:
+        """Motion in some of the contacts, the same record for the same choice: laws may keep what they computed."""
+        if self._parts[0] is not motion:
+            self._parts = motion, []
+        for known, part in self._parts[1]:
+            if known is chosen:
+                return part
+        self._parts[1].append((chosen, motion.select(chosen)))
+        return self._parts[1][-1][1]
 
     def _shares(self, contacts: Contacts) -> list[_Share]:
         """Each interaction that acts here, its contacts, and which they are; kept for the same contacts."""

@@ -19,15 +19,44 @@ from rigidfluid.errors import PluginError
 
 if TYPE_CHECKING:
     from rigidfluid.core.model.force_law import ForceLaw
+    from rigidfluid.core.model.types import Contacts
 
 Formula = Callable[[FloatArray, float, float, float, float, float, float], tuple[float, float, float, float]]
+
+
+class PairSprings(NamedTuple):
+    """Springs along the surfaces of two balls, or of one and a wall, and the friction that shortens them.
+
+    Force and couple on ball a are -k_t ξ - min(c |v_t|, μ |F_n|) v_t/|v_t| and -R [k_t ζ + min(c R |w|, μ_r |F_n|)
+    w/|w|], with F_n = f + g and c of the formula; ξ and ζ are shortened until force and couple are at most μ |F_n| and
+    μ_r R |F_n|. For the part of ζ along the normal it is μ_o in place of μ_r.
+
+    Parameters
+    ----------
+    stiffness : float
+        Stiffness k_t [force/length].
+    friction : float
+        Coefficient μ of friction along the surfaces [1].
+    rolling : float
+        Coefficient μ_r of rolling friction, zero without [1].
+    twisting : float
+        Coefficient μ_o of friction that resists turning about the normal, zero without [1].
+    bounded : bool
+        Whether the dashpot along the surfaces is bounded by itself; if not, its force is -c v_t.
+    """
+
+    stiffness: float
+    friction: float
+    rolling: float = 0.0
+    twisting: float = 0.0
+    bounded: bool = True
 
 
 class PairFormula(NamedTuple):
     """Energy U of a law in one contact of ball a with a ball or flat wall b, and its force on a, (f + g) n - c v_t.
 
     f comes from the energy and g from damping [force], both along the normal n, and c >= 0 resists the velocity v_t
-    along the surfaces [force·time/length]. No memory and no couples are possible.
+    along the surfaces [force·time/length]. The only memory and the only couples are those of ``springs``.
 
     Parameters
     ----------
@@ -39,10 +68,17 @@ class PairFormula(NamedTuple):
         infinite or not a number, as in arrays.
     parameters : (p,) array
         The law's own numbers, handed to the function as they are.
+    springs : PairSprings, optional
+        Springs along the surfaces, None without any; c is then that of their dashpot, which they bound.
+    each : callable, optional
+        ``each(contacts)`` gives the parameters of each contact, (m, p), by its surfaces and their radii alone, where
+        they differ; then ``parameters`` are not read.
     """
 
     function: Formula
     parameters: FloatArray
+    springs: PairSprings | None = None
+    each: Callable[[Contacts], FloatArray] | None = None
 
 
 def refuse_no_formula(answer: Any, *_: Any, **__: Any) -> None:
@@ -54,12 +90,20 @@ def refuse_no_formula(answer: Any, *_: Any, **__: Any) -> None:
     numbers = np.asarray(answer.parameters)
     if numbers.ndim != 1 or numbers.dtype.kind not in "fiu":
         raise Wrong(f"parameters {describe(numbers)}", "a row of real numbers")
+    if answer.springs is not None:
+        refuse_others(answer.springs, PairSprings, "springs")
 
 
 def own_formula(law: ForceLaw) -> PairFormula | None:
     """Formula of a law whose class gives one itself; an inherited one may leave out what the class has changed."""
     formula = law.pair_formula() if "pair_formula" in vars(type(law)) else None
     return formula and formula._replace(parameters=np.ascontiguousarray(formula.parameters, dtype=np.float64))
+
+
+def common_formula(law: ForceLaw) -> PairFormula | None:
+    """Own formula of a law, if it has one with the same parameters in all contacts."""
+    formula = own_formula(law)
+    return formula if formula is None or formula.each is None else None
 
 
 @cache

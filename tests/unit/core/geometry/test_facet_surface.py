@@ -184,3 +184,26 @@ def test_a_piece_asks_the_whole_surface_only_about_points_behind_it(monkeypatch:
     assert not asked
     assert piece.signed_distance(np.array([[2.0, 0.0], [0.2, 0.3]]))[0] < 0.0
     np.testing.assert_array_equal(asked, [[2.0, 0.0]])
+
+
+def cube() -> Facets:
+    triangles = [[a, b, c] for a, b, c, _ in SQUARES] + [[a, c, d] for a, _, c, d in SQUARES]
+    return Facets(CUBE, np.array(triangles), np.arange(len(triangles)))
+
+
+@pytest.mark.parametrize("facets", [polygon(L_SHAPE[[0, 1, 2, 5]]), cube(), *shapes()])
+def test_places_of_a_convex_shape_are_found_without_a_search(facets: Facets, monkeypatch: pytest.MonkeyPatch) -> None:
+    points, surface = queries(facets.points.shape[1]), FacetSurface(facets)
+    found = surface.nearby(points, np.inf, np.inf)
+    monkeypatch.setattr(FacetSurface, "_is_convex", False)
+    searched = FacetSurface(facets).nearby(points, np.inf, np.inf)
+    for one, other in zip(found, searched, strict=True):
+        np.testing.assert_array_equal(one, other)
+    assert len(found.point) > len(points) or surface._is_convex
+
+
+def test_a_hollow_of_any_depth_is_searched() -> None:
+    """Points before a facet by more than rounding have places of their own."""
+    for depth in (1e-9, 0.1):
+        dented = np.array([[0.0, 0.0], [1.0, depth], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]])
+        assert not FacetSurface(polygon(dented))._is_convex

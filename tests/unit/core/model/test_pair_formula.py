@@ -34,7 +34,7 @@ class InverseLaw(NormalLaw):
 
 def test_a_division_by_zero_is_infinite():
     one = np.ones(1)
-    assert deepest_gaps(compiled(at_rest), one, one, one, one, one, one, 3) == 1.0
+    assert deepest_gaps(compiled(at_rest), one[None], one, one, one, one, one, 3) == 1.0
 
 
 @pytest.mark.parametrize("function", [unknown, three, eval("lambda *numbers: (0.0, 0.0, 0.0, 0.0)")])
@@ -62,4 +62,4 @@ def test_parameters_may_be_a_list_of_integers():
     assert formula is not None
     assert formula.parameters.dtype == np.float64
     one = np.ones(1)
-    assert deepest_gaps(compiled(formula.function), formula.parameters, one, one, one, one, 0 * one, 60) == 1.0
+    assert deepest_gaps(compiled(formula.function), formula.parameters[None], one, one, one, one, 0 * one, 60) == 1.0

@@ -41,6 +41,17 @@ class Rubbing:
     turning: TurningFriction
 
 
+@dataclass(frozen=True, slots=True)
+class _Pressed:
+    """Forces in contacts: the law's ``damping`` (m, d) [force], the ``bedding`` of springs, ``most``, μ |F_n|, (m,)
+    [force], and the ``dashpots`` min(x γ |v_t|, μ |F_n|) v_t/|v_t| (m, d) [force]."""
+
+    damping: FloatArray
+    bedding: Bedding
+    most: FloatArray
+    dashpots: FloatArray
+
+
 class Friction(WrappedLaw):
     """Law F = F_n n - k_t ξ - min(x γ |v_t|, μ |F_n|) v_t/|v_t|, the force along the surfaces at most μ |F_n|.
 
@@ -79,39 +90,57 @@ class Friction(WrappedLaw):
             self.round_option = rubbing.turning.keys[0]
         restitution = layer(Restitution, law)
         self._restitution = 1.0 if restitution is None else restitution.restitution
+        self._stiffness: tuple[Contacts | None, FloatArray] = None, np.zeros(0)
+        self._pressed: tuple[Contacts, Motion, _Pressed] | None = None
 
     def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
         """Damping of the law, and the dashpots along the surfaces on ``body_a``, (m, d) [force]."""
-        damping = self.law.damping(contacts, motion)
-        most = self._most(contacts, damping)
-        return damping - self._dashpots(contacts, motion, self.tangential_stiffness(contacts), most)
+        pressed = self._pressed_in(contacts, motion)
+        return pressed.damping - pressed.dashpots
 
     def tangential_stiffness(self, contacts: Contacts) -> FloatArray:
         """k_t within range, (m,) [force/length]."""
-        given = self._rubbing.stiffness
-        stiffness = self._share(contacts) if given is None else np.full_like(contacts.gap, given)
-        return np.where(contacts.gap < self.range, stiffness, 0.0)
+        if self._stiffness[0] is not contacts:
+            given = self._rubbing.stiffness
+            stiffness = self._share(contacts) if given is None else np.full_like(contacts.gap, given)
+            self._stiffness = contacts, np.where(contacts.gap < self.range, stiffness, 0.0)
+        return self._stiffness[1]
 
     def held_displacement(self, contacts: Contacts, motion: Motion, displacement: FloatArray) -> FloatArray:
         """ξ with a force of at most μ |F_n|, the nearest along that force, (m, d) [length]."""
-        most = self._most(contacts, self.law.damping(contacts, motion))
-        stiffness = self.tangential_stiffness(contacts)
-        return held_displacement(stiffness, self._dashpots(contacts, motion, stiffness, most), most, displacement)
+        pressed = self._pressed_in(contacts, motion)
+        return held_displacement(pressed.bedding.stiffness, pressed.dashpots, pressed.most, displacement)
 
     def couple(self, contacts: Contacts, motion: Motion) -> FloatArray:
         """Couples of the law, and of dashpots that resist turning, on ``body_a``, (m, k) [force·length]."""
-        return self.law.couple(contacts, motion) + self._turning.couple(
-            contacts, motion, self._bedding(contacts, motion)
-        )
+        bedding = self._pressed_in(contacts, motion).bedding
+        return self.law.couple(contacts, motion) + self._turning.couple(contacts, motion, bedding)
 
     def held_turning(self, contacts: Contacts, motion: Motion, turning: FloatArray) -> FloatArray:
         """ζ with couples of at most μ_r R |F_n| and μ_o R |F_n|, (m, k) [length]."""
-        return self._turning.held(contacts, motion, self._bedding(contacts, motion), turning)
+        return self._turning.held(contacts, motion, self._pressed_in(contacts, motion).bedding, turning)
 
-    def _bedding(self, contacts: Contacts, motion: Motion) -> Bedding:
-        normal_force = self._normal_force(contacts, self.law.damping(contacts, motion))
-        stiffness = self.tangential_stiffness(contacts)
-        return Bedding(stiffness, self._coefficient(stiffness, motion.mass), normal_force)
+    def ball_springs(self) -> tuple[float, ...]:
+        """Numbers of the springs of balls, see `BallLaw`."""
+        rubbing, turning = self._rubbing, self._turning
+        stiffness = np.nan if rubbing.stiffness is None else rubbing.stiffness
+        dashpot = rubbing.damping * float(dashpot_coefficient(self._restitution, 1.0, np.ones(1))[0])
+        share = STIFFNESS_RATIO / (self.range - rubbing.gap)
+        return stiffness, self.friction, turning.rolling, turning.twisting, 1.0, dashpot, rubbing.gap, share
+
+    def _pressed_in(self, contacts: Contacts, motion: Motion) -> _Pressed:
+        """Forces in the contacts, kept for the same records: each substep asks four times."""
+        if self._pressed is None or self._pressed[0] is not contacts or self._pressed[1] is not motion:
+            self._pressed = contacts, motion, self._press(contacts, motion)
+        return self._pressed[2]
+
+    def _press(self, contacts: Contacts, motion: Motion) -> _Pressed:
+        damping, stiffness = self.law.damping(contacts, motion), self.tangential_stiffness(contacts)
+        normal_force = np.abs(normal_part(self.law.force(contacts) + damping, contacts))
+        coefficient = self._rubbing.damping * dashpot_coefficient(self._restitution, stiffness, motion.mass)
+        most = self.friction * normal_force
+        dashpots = sliding_friction(coefficient, most, tangential_part(motion.velocity, contacts))
+        return _Pressed(damping, Bedding(stiffness, coefficient, normal_force), most, dashpots)
 
     def _share(self, contacts: Contacts) -> FloatArray:
         """STIFFNESS_RATIO of the force at the smallest gap, over the way from range to there, (m,) [force/length]."""
@@ -119,20 +148,3 @@ class Friction(WrappedLaw):
         pressed = replace(contacts, gap=np.full_like(contacts.gap, gap))
         force = np.maximum(normal_part(self.law.force(pressed), pressed), 0.0)
         return np.asarray(STIFFNESS_RATIO * force / (self.range - gap))
-
-    def _most(self, contacts: Contacts, damping: FloatArray) -> FloatArray:
-        """μ |F_n|, (m,) [force], with the law's ``damping`` (m, d)."""
-        return self.friction * self._normal_force(contacts, damping)
-
-    def _normal_force(self, contacts: Contacts, damping: FloatArray) -> FloatArray:
-        """|F_n|, (m,) [force], with the law's ``damping`` (m, d)."""
-        return np.abs(normal_part(self.law.force(contacts) + damping, contacts))
-
-    def _dashpots(self, contacts: Contacts, motion: Motion, stiffness: FloatArray, most: FloatArray) -> FloatArray:
-        """min(x γ |v_t|, ``most``) v_t/|v_t| beside springs of this ``stiffness`` (m,), (m, d) [force]."""
-        coefficient = self._coefficient(stiffness, motion.mass)
-        return sliding_friction(coefficient, most, tangential_part(motion.velocity, contacts))
-
-    def _coefficient(self, stiffness: FloatArray, mass: FloatArray) -> FloatArray:
-        """x γ beside springs of this ``stiffness`` (m,) between masses (m,), (m,) [force·time/length]."""
-        return self._rubbing.damping * dashpot_coefficient(self._restitution, stiffness, mass)

@@ -47,7 +47,7 @@ def excess(restitution: float, share: FloatArray) -> FloatArray:
     ``restitution`` e is from LEAST to 1 [1]; ``share`` (m,) is ẇ/√(ẇ² + 2U/m), from -1 to 1, with the closing speed ẇ,
     the energy U of the law and the effective mass m [1].
     """
-    return np.asarray(share * _excess_per_share(restitution)(share))
+    return np.asarray(share * excess_per_share(restitution)(share))
 
 
 def excess_by_speed(
@@ -95,7 +95,7 @@ def _logarithm() -> PiecewiseCubic:
 
 
 @lru_cache
-def _excess_per_share(restitution: float) -> PiecewiseCubic:
+def excess_per_share(restitution: float) -> PiecewiseCubic:
     """Excess y/share over the share, √(2 G(x)) at rest; nodes are even in ln(1 + y)."""
     most, _, room = (float(one) for one in hardening(np.array(restitution)))
     ends = np.log(room), 0.0, np.log1p(most)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import replace
-from typing import Annotated, ClassVar, Literal
+from operator import attrgetter, is_
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, ValidationError, ValidatorFunctionWrapHandler, WrapValidator
@@ -19,6 +20,11 @@ from rigidfluid.core.model.types import Contacts, Loads
 
 AUTO: Literal["auto"] = "auto"
 """Value of ε in a scene that leaves it to the loads."""
+
+_KEPT = 8
+"""Number of choices of pairs whose work is kept: all in reach and those in range are asked about by turns."""
+
+_columns = attrgetter(*(name for name in Contacts.__slots__ if name != "gap"))
 
 
 def _one_complaint(value: object, validate: ValidatorFunctionWrapHandler) -> object:
@@ -57,7 +63,8 @@ class Repulsion(ForceLaw):
 
     def __init__(self, options: PartOptions, range: float, loads: Loads | None = None) -> None:
         super().__init__(options, range, loads)
-        self._held: tuple[tuple[bytes, ...], FloatArray] | None = None
+        self._held: dict[tuple[bytes, ...], FloatArray] = {}
+        self._latest: tuple[tuple[Any, ...], FloatArray] | None = None
         if AUTO in (self.options.epsilon, self.options.epsilon_wall):
             self.loads = require_loads(loads, range)
 
@@ -86,15 +93,28 @@ class Repulsion(ForceLaw):
         return self.unit_stiffness(contacts) / self.epsilon(contacts)
 
     def formula(self, function: Formula) -> PairFormula | None:
-        """Formula of one contact by a ``function`` of range, ε and ε at walls, None where ε is each contact's own."""
+        """Formula of one contact by a ``function`` of range, ε and ε at walls; with ``auto`` both are each contact's
+        own. None where ε depends on other laws too."""
         between, at_walls = self.options.epsilon, self.options.epsilon_wall
-        if AUTO in (between, at_walls):
+        if AUTO not in (between, at_walls):
+            return PairFormula(function, np.array([self.range, between, between if at_walls is None else at_walls]))
+        if self.loads is None or self.loads.attraction is not None:
             return None
-        return PairFormula(function, np.array([self.range, between, between if at_walls is None else at_walls]))
+        return PairFormula(function, np.zeros(3), each=self._each_parameters)
+
+    def _each_parameters(self, contacts: Contacts) -> FloatArray:
+        epsilon = self.epsilon(contacts)
+        return np.column_stack([np.full_like(epsilon, self.range), epsilon, epsilon])
 
     def epsilon(self, contacts: Contacts) -> FloatArray:
         """Stiffness parameter ε of each contact, (m,) [length^p/force]; infinite with ``auto`` between two bodies of
-        prescribed twist."""
+        prescribed twist. It does not depend on the gap, and is kept for contacts that differ in that alone."""
+        columns = _columns(contacts)
+        if self._latest is None or not all(map(is_, columns, self._latest[0])):
+            self._latest = columns, self._each_epsilon(contacts)
+        return self._latest[1]
+
+    def _each_epsilon(self, contacts: Contacts) -> FloatArray:
         between, at_walls = self.options.epsilon, self.options.epsilon_wall
         if at_walls is None:
             return self._epsilon(between, contacts)
@@ -115,13 +135,15 @@ class Repulsion(ForceLaw):
         return epsilon
 
     def _work_to_stop(self, contacts: Contacts, loads: Loads) -> FloatArray:
-        """Work of impacts (m,) [energy], kept for the next question: in substeps the same pairs are asked many times,
+        """Work of impacts (m,) [energy], kept for the next questions: in substeps the same pairs are asked many times,
         and without attraction the work is that of the pair wherever it is."""
         if loads.attraction is not None:
             return work_to_stop(contacts, loads, self.range)
         pairs = tuple(
             column.tobytes() for column in (contacts.body_a, contacts.body_b, contacts.radius_a, contacts.radius_b)
         )
-        if self._held is None or self._held[0] != pairs:
-            self._held = pairs, work_to_stop(contacts, loads, self.range)
-        return self._held[1]
+        if pairs not in self._held:
+            if len(self._held) == _KEPT:
+                self._held.clear()
+            self._held[pairs] = work_to_stop(contacts, loads, self.range)
+        return self._held[pairs]

@@ -60,14 +60,14 @@ class Restitution(WrappedLaw):
     def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
         """Damping force f x ẇ/v along the normal on ``body_a``, (m, d) [force]."""
         damping = np.zeros_like(contacts.normal)
-        rows = np.flatnonzero((contacts.gap < self.range) & (motion.mass > 0.0))
-        if len(rows):
-            near = select(contacts, rows)
+        inside = (contacts.gap < self.range) & (motion.mass > 0.0)
+        if inside.any():
+            near = select(contacts, inside)
             force = np.maximum(normal_part(self.law.force(near), near), 0.0)
-            stored = np.maximum(2.0 * self.law.energy(near) / motion.mass[rows], 0.0)
-            closing = -normal_part(motion.velocity[rows], near)
-            excess = self._excess(near, closing, stored, motion.mass[rows])
-            damping[rows] = (force * excess)[:, None] * near.normal
+            stored = np.maximum(2.0 * self.law.energy(near) / motion.mass[inside], 0.0)
+            closing = -normal_part(motion.velocity[inside], near)
+            excess = self._excess(near, closing, stored, motion.mass[inside])
+            damping[inside] = (force * excess)[:, None] * near.normal
         return damping
 
     def _excess(self, contacts: Contacts, closing: FloatArray, stored: FloatArray, mass: FloatArray) -> FloatArray:

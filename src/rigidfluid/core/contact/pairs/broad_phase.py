@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 import scipy
@@ -30,9 +31,19 @@ def near_pairs(position: FloatArray, radii: FloatArray, reach: float) -> tuple[I
 def near_walls(position: FloatArray, radii: FloatArray, walls: Sequence[Wall], reach: float) -> list[tuple[int, Wall]]:
     """Bodies and walls with d(x) - r ≤ ``reach``, d the distance to the wall, sorted by body; pairs that rounding puts
     just beyond are among them. ``position`` (n, d), ``radii`` (n,) and ``reach``, which may be infinite [length]."""
-    slack = reach + _rounding(radii, reach)
-    near = [wall.shape.signed_distance(position) - radii <= slack for wall in walls]
-    return [(body, wall) for body in range(len(radii)) for wall, close in zip(walls, near, strict=True) if close[body]]
+    bodies, rows = rows_of_near_walls(position, radii, walls, reach)
+    return [(body, walls[row]) for body, row in zip(bodies.tolist(), rows.tolist(), strict=True)]
+
+
+def rows_of_near_walls(
+    position: FloatArray, radii: FloatArray, walls: Sequence[Wall], reach: float
+) -> tuple[IntArray, IntArray]:
+    """Bodies and rows of the walls of `near_walls`, (m,) each."""
+    near = np.zeros((len(radii), len(walls)), dtype=bool)
+    for row, wall in enumerate(walls):
+        near[:, row] = wall.shape.signed_distance(position) - radii <= reach + _rounding(radii, reach)
+    bodies, rows = near.nonzero()
+    return bodies, rows
 
 
 def least_gaps(position: FloatArray, radii: FloatArray, walls: Sequence[Wall]) -> FloatArray:
@@ -59,12 +70,17 @@ def nearest_others(position: FloatArray) -> tuple[FloatArray, IntArray]:
 
 def _candidates(position: FloatArray, radii: FloatArray, reach: float) -> tuple[IntArray, IntArray]:
     if len(radii) <= _FEW or not np.isfinite(reach):
-        first, second = np.triu_indices(len(radii), k=1)
-        return first.astype(np.int64), second.astype(np.int64)
+        return _all_pairs(len(radii))
     span = max(reach + 2 * float(radii.max()), 0.0)
     tree = scipy.spatial.cKDTree(position, compact_nodes=False, balanced_tree=False)
     pairs = tree.query_pairs(span + _rounding(radii, reach), output_type="ndarray")
     return pairs[:, 0].astype(np.int64), pairs[:, 1].astype(np.int64)
+
+
+@lru_cache(maxsize=2)
+def _all_pairs(count: int) -> tuple[IntArray, IntArray]:
+    first, second = np.triu_indices(count, k=1)
+    return first.astype(np.int64), second.astype(np.int64)
 
 
 def _rounding(radii: FloatArray, reach: float) -> float:

@@ -87,6 +87,8 @@ def _matched(springs: TangentialSprings, contacts: Contacts, pose: Pose) -> tupl
         return mine, theirs
     points = _carried_points(springs, pose)
     own, found = _plain_matches(points, before, contacts, now)
+    if len(own) == len(before):
+        return own, found
     mine, theirs = [own], [found]
     for pair in np.setdiff1d(np.intersect1d(before, now), before[own]):
         rows, others = np.flatnonzero(before == pair), np.flatnonzero(now == pair)
@@ -108,6 +110,8 @@ def _plain_matches(
     away = np.where(same, distances(points, PointPairs(contacts.point_a, points_of_b(contacts))), np.inf)
     nearest = np.argmin(away, axis=1)
     alone = same.any(axis=1) & (np.bincount(nearest, minlength=len(now))[nearest] == 1)
+    if alone.all():
+        return np.arange(len(before)), nearest
     rows = np.flatnonzero(np.isin(before, before[~alone], invert=True))
     return rows, nearest[rows]
 

@@ -34,8 +34,12 @@ class PairList:
         """Tell whether no other pair can be within ``reach``: all pairs are in the list, or nothing has moved far."""
         if np.isinf(self.reach):
             return True
-        spare = 0.5 * (self.reach - reach)
+        spare = self.spare(reach)
         return spare > 0.0 and bool(_all_near(position, self.position, spare))
+
+    def spare(self, reach: float) -> float:
+        """Way that any ball may go before another pair can be within ``reach`` [length]."""
+        return 0.5 * max(self.reach - reach, 0.0)
 
 
 class NearPairs:

@@ -35,8 +35,8 @@ def advance_balls(formula, law, balls, radius, around, load, impulse, span):
     while left > 0.0 and planned > 0.0 and steps < most:
         part = min(substep, left)
         half = 0.5 * part
-        _kick(velocity, mass, force, weight, pushed, half)
-        _twist(orientation, momentum, inertia, torque, turned, half, elapsed, since)
+        kick_balls(velocity, mass, force, weight, pushed, half)
+        twist_balls(orientation, momentum, inertia, torque, turned, half, elapsed, since)
         square = drift_balls(position, velocity, part, before)
         elapsed += part
         if not square < (0.5 * max(list_reach - law_range, 0.0)) ** 2:
@@ -51,8 +51,8 @@ def advance_balls(formula, law, balls, radius, around, load, impulse, span):
         loss_before, loss = loss, 0.0
         pairs = body[:touching], gap, normal
         dampers = _push(formula, parameters, balls, radius, *pairs, damped, force, torque)
-        _kick(velocity, mass, force, weight, pushed, half)
-        _twist(orientation, momentum, inertia, torque, turned, half, elapsed, since)
+        kick_balls(velocity, mass, force, weight, pushed, half)
+        twist_balls(orientation, momentum, inertia, torque, turned, half, elapsed, since)
         if dampers:
             loss = _loss(balls, radius, *pairs, damped)
         dissipated += half * (loss_before + loss)
@@ -67,7 +67,7 @@ def advance_balls(formula, law, balls, radius, around, load, impulse, span):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _kick(velocity, mass, force, weight, pushed, time):
+def kick_balls(velocity, mass, force, weight, pushed, time):
     """Add to velocities, and to the impulse of contacts, what forces give in a time."""
     for i in range(len(velocity)):
         share = time / mass[i]
@@ -77,7 +77,7 @@ def _kick(velocity, mass, force, weight, pushed, time):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _twist(orientation, momentum, inertia, torque, turned, time, elapsed, since):
+def twist_balls(orientation, momentum, inertia, torque, turned, time, elapsed, since):
     """Add to angular momenta what torques give in a time; before one acts, its ball turns as far as it is behind."""
     for i in range(len(momentum)):
         turns = False
@@ -170,7 +170,7 @@ def _push(formula, parameters, balls, radius, body, gap, normal, damped, force, 
     along, dampers = np.zeros(3), 0
     for i in range(len(body)):
         a, b = body[i]
-        opening = _relative_velocity(along, normal, i, a, b, gap, radius, inertia, velocity, momentum)
+        opening = relative_velocity(along, normal, i, a, b, gap, radius, inertia, velocity, momentum)
         sliding = 0.0
         for k in range(dimension):
             along[k] -= opening * normal[i, k]
@@ -203,14 +203,14 @@ def _loss(balls, radius, body, gap, normal, damped):
     taken, relative = 0.0, np.zeros(3)
     for i in range(len(body)):
         a, b = body[i]
-        _relative_velocity(relative, normal, i, a, b, gap, radius, inertia, velocity, momentum)
+        relative_velocity(relative, normal, i, a, b, gap, radius, inertia, velocity, momentum)
         for k in range(velocity.shape[1]):
             taken -= damped[i, k] * relative[k]
     return taken
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _relative_velocity(relative, normal, i, a, b, gap, radius, inertia, velocity, momentum):
+def relative_velocity(relative, normal, i, a, b, gap, radius, inertia, velocity, momentum):
     """Velocity of a relative to b in the middle of their gap, into ``relative``; its part along the normal is
     returned."""
     count, dimension = velocity.shape

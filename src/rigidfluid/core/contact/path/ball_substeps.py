@@ -12,7 +12,7 @@ from rigidfluid.core.mechanics.dynamics import DryDynamics
 from rigidfluid.core.model.detection import Sight
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.force_law import ForceLaw
-from rigidfluid.core.model.pair_formula import PairFormula, compiled, own_formula
+from rigidfluid.core.model.pair_formula import PairFormula, common_formula, compiled
 from rigidfluid.core.model.part_results import refuse_no_number
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Wrench
@@ -52,11 +52,20 @@ class BallSubsteps:
 
 def ball_substeps(system: System, law: ForceLaw, dynamics: BodyDynamics) -> BallSubsteps | None:
     """Compiled substeps of bodies with these ``dynamics``, None unless they are balls that move freely between flat
-    walls at rest, and the ``law`` has a formula that acts alike in all contacts."""
-    detection, formula = system.detection, own_formula(law)
-    if formula is None or not isinstance(detection, PoseDetection) or not isinstance(dynamics, DryDynamics):
+    walls at rest, and the ``law`` has a formula that acts alike in all contacts, and no springs along surfaces."""
+    formula = common_formula(law)
+    near = None if formula is None or law.sticking else near_free_balls(system, dynamics)
+    if formula is None or near is None or not isinstance(dynamics, DryDynamics):
+        return None
+    return BallSubsteps(system, formula, near, dynamics)
+
+
+def near_free_balls(system: System, dynamics: BodyDynamics) -> NearPairs | None:
+    """Neighbour list of the bodies with these ``dynamics``, None unless they are balls that move freely between flat
+    walls at rest."""
+    detection = system.detection
+    if not isinstance(detection, PoseDetection) or not isinstance(dynamics, DryDynamics):
         return None
     if system.wall_velocity is not None or not dynamics.is_of_free_balls:
         return None
-    near = detection.near_balls
-    return None if near is None else BallSubsteps(system, formula, near, dynamics)
+    return detection.near_balls

@@ -12,7 +12,7 @@ from rigidfluid.core.geometry.arrays import FloatArray, IntArray
 from rigidfluid.core.model.detection import Sight
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.force_law import ForceLaw
-from rigidfluid.core.model.pair_formula import PairFormula, compiled, own_formula
+from rigidfluid.core.model.pair_formula import PairFormula, common_formula, compiled
 from rigidfluid.core.model.part_results import refuse_no_number
 from rigidfluid.core.model.system import System
 from rigidfluid.core.model.types import Pose, Wrench
@@ -107,7 +107,7 @@ class ModalSubsteps:
 def modal_substeps(system: System, law: ForceLaw, dynamics: BodyDynamics) -> ModalSubsteps | None:
     """Compiled substeps of bodies with these ``dynamics``, None unless they are free balls between flat walls at rest,
     of which a reduced model moves some without turning them, and the ``law`` has a formula and no dampers."""
-    detection, formula = system.detection, own_formula(law)
+    detection, formula = system.detection, common_formula(law)
     if formula is None or law.dissipative or not isinstance(detection, PoseDetection):
         return None
     if not isinstance(dynamics, ModalDynamics) or dynamics.turns or system.prescribed.any():

@@ -8,15 +8,21 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rigidfluid.core.contact.laws.stiffness import contacts_on_the_way, greatest_stiffness
+from rigidfluid.core.contact.laws.ball_law import ball_law
+from rigidfluid.core.contact.laws.stiffness import (
+    contacts_on_the_way,
+    greatest_of_each,
+    greatest_stiffness,
+    repeated,
+)
 from rigidfluid.core.contact.path.delassus import delassus
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.geometry.wall import WallVelocities
 from rigidfluid.core.mechanics.matrices import full
-from rigidfluid.core.model.contacts import middle, normal_part, select, sides, turning_radius
+from rigidfluid.core.model.contacts import middle, normal_part, select, sides, tangential_part, turning_radius
 from rigidfluid.core.model.dynamics import BodyDynamics
 from rigidfluid.core.model.force_law import ForceLaw
-from rigidfluid.core.model.pair_formula import PairFormula, compiled, own_formula
+from rigidfluid.core.model.pair_formula import common_formula, compiled
 from rigidfluid.core.model.part_results import refuse_no_number
 from rigidfluid.core.model.types import Contacts, Motion, Pose, Twist
 
@@ -213,21 +219,30 @@ def _turning_rate(
     Their power S v² + 2 Q v w + W w², which is never negative, is at most 2 (S v² + W w²).
     """
     deepest = _deepest(law, contacts, approach.energy + law.energy(contacts), force)
-    axes, mass = np.eye(contacts.normal.shape[1]), relative_motion(contacts, dynamics).mass
-    sliding, rolling = np.zeros((2, len(contacts)))
+    axes, turning = np.eye(contacts.normal.shape[1]), np.eye(dynamics.twist.angular_velocity.shape[1])
+    mass, (sliding, rolling) = relative_motion(contacts, dynamics).mass, np.zeros((2, len(contacts)))
     for there in contacts_on_the_way(law, contacts, deepest):
-        for speed in _SPEEDS:
-            for axis in axes:
-                along = axis - (contacts.normal @ axis)[:, None] * contacts.normal
-                resisting = law.damping(there, Motion(speed * along, mass))
-                sliding = np.maximum(sliding, np.linalg.norm(resisting, axis=1) / speed)
-            for axis in np.eye(dynamics.twist.angular_velocity.shape[1]):
-                spin = np.tile(speed * axis, (len(contacts), 1))
-                resisting = law.couple(there, Motion(np.zeros_like(contacts.normal), mass, spin))
-                rolling = np.maximum(rolling, np.linalg.norm(resisting, axis=1) / speed)
+        tried, speed, axis = _tried(there, axes)
+        motion = Motion(speed[:, None] * tangential_part(axis, tried), np.resize(mass, len(tried)))
+        sliding = np.maximum(sliding, greatest_of_each(_size(law.damping(tried, motion)) / speed, len(contacts)))
+        tried, speed, axis = _tried(there, turning)
+        motion = Motion(np.zeros_like(tried.normal), np.resize(mass, len(tried)), speed[:, None] * axis)
+        rolling = np.maximum(rolling, greatest_of_each(_size(law.couple(tried, motion)) / speed, len(contacts)))
     lightest = _lightest(contacts, dynamics)
     moving = _inverse_masses(contacts, dynamics) + _square_arms(contacts, dynamics) * lightest
     return 2.0 * (_highest_sum(sliding, contacts, moving) + _highest_sum(rolling, contacts, lightest))
+
+
+def _tried(contacts: Contacts, axes: FloatArray) -> tuple[Contacts, FloatArray, FloatArray]:
+    """Contacts, once for each of the speeds at which dampers are evaluated and each of the ``axes`` (c, k); that speed
+    of each (m,) and that axis (m, k)."""
+    tried = repeated(contacts, len(_SPEEDS) * len(axes))
+    each = np.repeat(axes, len(contacts), axis=0)
+    return tried, np.repeat(_SPEEDS, len(each)), np.tile(each, (len(_SPEEDS), 1))
+
+
+def _size(vectors: FloatArray) -> FloatArray:
+    return np.asarray(np.linalg.norm(vectors, axis=1))
 
 
 def _square_arms(contacts: Contacts, dynamics: BodyDynamics) -> FloatArray:
@@ -274,9 +289,11 @@ def _deepest(law: ForceLaw, contacts: Contacts, energy: FloatArray, force: Float
 
     The gap is zero where the law never can.
     """
-    start, formula = np.minimum(contacts.gap, law.range), own_formula(law)
-    if formula is not None and np.array_equal(contacts.at_wall, np.isinf(contacts.radius_b)):
-        return _deepest_by_formula(formula, contacts, start, energy, force)
+    start = np.minimum(contacts.gap, law.range)
+    if np.array_equal(contacts.at_wall, np.isinf(contacts.radius_b)):
+        found = _deepest_by_formula(law, contacts, start, energy, force)
+        if found is not None:
+            return found
     low, high = np.zeros(len(contacts)), start
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
@@ -286,13 +303,20 @@ def _deepest(law: ForceLaw, contacts: Contacts, energy: FloatArray, force: Float
 
 
 def _deepest_by_formula(
-    formula: PairFormula, contacts: Contacts, start: FloatArray, energy: FloatArray, force: FloatArray
-) -> FloatArray:
-    """The same gap (m,), of balls and flat walls, searched from ``start`` (m,) on."""
+    law: ForceLaw, contacts: Contacts, start: FloatArray, energy: FloatArray, force: FloatArray
+) -> FloatArray | None:
+    """The same gap (m,), of balls and flat walls, searched from ``start`` (m,) on; None without a formula."""
+    of_balls, formula = ball_law(law), common_formula(law)
+    if of_balls is not None:
+        formula, parameters = of_balls.formula, of_balls.parameters(contacts)
+    elif formula is not None:
+        parameters = formula.parameters[None]
+    else:
+        return None
     from rigidfluid.core.contact.path.deepest_gaps import deepest_gaps
 
     radii = contacts.radius_a, contacts.radius_b
-    found = deepest_gaps(compiled(formula.function), formula.parameters, start, *radii, energy, force, _HALVINGS)
+    found = deepest_gaps(compiled(formula.function), parameters, start, *radii, energy, force, _HALVINGS)
     return np.asarray(found)
 
 
@@ -301,9 +325,10 @@ def _greatest(law: ForceLaw, contacts: Contacts, motion: Motion, deepest: FloatA
     damping = np.zeros(len(contacts))
     if law.dissipative:
         for there in contacts_on_the_way(law, contacts, deepest):
-            for speed in _SPEEDS:
-                resisting = law.damping(there, Motion(speed * contacts.normal, motion.mass))
-                damping = np.maximum(damping, -np.sum(resisting * contacts.normal, axis=1) / speed)
+            tried, speed = repeated(there, len(_SPEEDS)), np.repeat(_SPEEDS, len(there))
+            opening = Motion(speed[:, None] * tried.normal, np.resize(motion.mass, len(tried)))
+            resisting = -normal_part(law.damping(tried, opening), tried) / speed
+            damping = np.maximum(damping, greatest_of_each(resisting, len(contacts)))
     return greatest_stiffness(law, contacts, deepest), damping
 
 

@@ -12,6 +12,7 @@ from rigidfluid.core.contact.path.body_step import BodyStep, arrived
 from rigidfluid.core.contact.path.contact_load import contact_load
 from rigidfluid.core.contact.path.look_ahead import fastest_speeds
 from rigidfluid.core.contact.path.modal_substeps import modal_substeps
+from rigidfluid.core.contact.path.spring_substeps import spring_substeps
 from rigidfluid.core.contact.path.substep import Plan, Reach, plan
 from rigidfluid.core.contact.path.substeps import SingleSubsteps, Span, Substeps
 from rigidfluid.core.mechanics.wrenches import nothing
@@ -78,8 +79,7 @@ class SubstepPath:
         impulse, dissipated, actuator_work, count, left = nothing(dynamics.pose), 0.0, 0.0, 0, size
         load = contact_load(system, self.law, contacts, dynamics, self.springs)
         dissipated += load.slipped
-        given = system, self.law, dynamics
-        substeps: Substeps = ball_substeps(*given) or modal_substeps(*given) or SingleSubsteps(*given)
+        substeps = _substeps(system, self.law, dynamics)
         planned, free_flight, substep, longest = 0.0, 0.0, 0.0, size / spring_parts(system, size)
         while left > 0.0:
             if planned <= 0.0 or contacts.gap.min(initial=np.inf) > self.law.range:
@@ -126,6 +126,14 @@ class SubstepPath:
         if touch and span - planned.free_flight > HOPELESS * planned.substep:
             raise _too_stiff(self.system, contacts, planned.substep)
         return planned
+
+
+def _substeps(system: System, law: ForceLaw, dynamics: BodyDynamics) -> Substeps:
+    """Compiled substeps where these are for such bodies and laws, else one by one."""
+    for maker in (ball_substeps, spring_substeps, modal_substeps):
+        if (found := maker(system, law, dynamics)) is not None:
+            return found
+    return SingleSubsteps(system, law, dynamics)
 
 
 def _surface_reach(system: System) -> Reach:
