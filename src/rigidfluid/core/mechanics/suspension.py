@@ -40,7 +40,7 @@ def coordination(count: int, a: IntArray, b: IntArray) -> float:
 def contact_stress(force: FloatArray, arm: FloatArray, volume: float) -> FloatArray:
     """Stress -Σ F (x_a - x_b)ᵀ/V (d, d) of forces F (m, d) on a in contacts between bodies, whose centres are an
     ``arm`` (m, d) apart, in a ``volume`` [force/length^(d-1)]."""
-    return -np.asarray(force.T @ arm) / volume
+    return np.asarray(force.T @ -arm) / volume
 
 
 def symmetric(stress: FloatArray) -> FloatArray:

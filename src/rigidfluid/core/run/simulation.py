@@ -81,7 +81,8 @@ class Simulation(Described):
         How many processes were started to share the run; None if the backend's own ranks are those.
 
     Between steps ``state`` may be looked at, ``stepper.propose`` be another step controller, and
-    ``mesh_updater.needs_remesh`` another rule of re-meshing.
+    ``mesh_updater.needs_remesh`` another rule of re-meshing. ``origin`` is the model that the run began with, ``model``
+    that of the bodies which are there now.
     """
 
     def __init__(

@@ -139,7 +139,8 @@ class RandomBodies(Table):
     )
     region: RegionTable | None = Field(
         default=None,
-        description="Region that holds all of each body; the whole domain if not given, across periodic surfaces too",
+        description="Region that holds all of each body; the whole domain if not given, "
+        "in a swarm across periodic surfaces too",
     )
     velocity: InitialVelocity = None
     velocity_deviation: NotNegative = Field(

@@ -101,13 +101,15 @@ def _surfaces(mesh: Mesh, system: System) -> Iterator[SurfaceFigures]:
     sides = _sides(mesh)
     for number in range(len(system.bodies)):
         yield _body_figures(mesh, system, number, sides)
-    for number in range(len(system.meshed(system.pose).pieces)):
-        yield _piece_figures(mesh, system, number)
+    domain = system.meshed(system.pose)
+    for number in range(len(domain.pieces)):
+        if number not in domain.periodic_pieces:  # the mesh may be cut open anywhere
+            yield _piece_figures(mesh, system, number)
 
 
 def _body_figures(mesh: Mesh, system: System, number: int, sides: FloatArray) -> SurfaceFigures:
     """Figures of a body's surface; ``sides`` (F,) as in `_sides`."""
-    body, pose, own = system.bodies[number], system.pose, mesh.markers == number
+    body, pose, own = system.bodies[number], mesh.images_of(system.pose), mesh.markers == number
     facets, given = mesh.facets[own], None
     if body.facets is not None:
         given = _Given(to_world(pose, number, body.facets.points), body.facets.vertices)

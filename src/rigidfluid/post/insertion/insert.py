@@ -5,12 +5,11 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 
 from rigidfluid.core.case.scene_model import Case, model_of
-from rigidfluid.core.mesh.adaptation.first_mesh import inserted_mesh
-from rigidfluid.core.mesh.adaptation.remesh import remesh
+from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
 from rigidfluid.core.mesh.fluid_domain import fluid_domain_at
 from rigidfluid.core.mesh.size.size_interface import with_fields_at_rest
 from rigidfluid.core.model.system import System
@@ -57,12 +56,13 @@ def insert(
         way = inserter.chosen(around.bodies, around.domain)
     out = Path("out") / f"{model.name}_mesh" if out is None else Path(out)
     with take_folder(out, INSERTION, new=True):
-        with _timed(seconds, "insertion"):
-            progress(_WAYS[way])
-            mesh = inserted_mesh(around, sizes, inserter)
-        with _timed(seconds, "grading"):
-            progress("grading the cells")
-            mesh = remesh(mesh, around, sizes)
+        phases = {"insertion": _WAYS[way], "grading": "grading the cells"}
+
+        def watch(phase: str) -> AbstractContextManager[None]:
+            progress(phases[phase])
+            return _timed(seconds, phase)
+
+        mesh = initial_mesh(around, sizes, inserter, watch)
         figures = measured(model.name, way, mesh, system, seconds)
         progress("writing mesh and report")
         return figures, _written(figures, mesh, system, out)
@@ -83,4 +83,4 @@ def _written(figures: Figures, mesh: Mesh, system: System, out: Path) -> list[Pa
 def _timed(seconds: dict[str, float], phase: str) -> Iterator[None]:
     start = time.perf_counter()
     yield
-    seconds[phase] = time.perf_counter() - start
+    seconds[phase] = seconds.get(phase, 0.0) + time.perf_counter() - start

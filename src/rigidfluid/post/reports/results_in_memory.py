@@ -28,8 +28,8 @@ _REMEDY = "Give the Simulation."
 def results_of(run: Simulation | History) -> Results:
     """Results of a simulation until now, or of a run that has ended, without energies, joints and contacts.
 
-    Raises OutputError for the history of a run that goes on or whose model was made in Python: it does not know its
-    bodies.
+    Raises OutputError for a run without bodies, and for the history of one that goes on or whose model was made in
+    Python: it does not know its bodies.
     """
     if not isinstance(run, History):
         return _results(run.history, run.origin, run.population)
@@ -50,9 +50,10 @@ def _results(history: History, origin: Model, population: Population) -> Results
     model = population.ever(origin, there) if population else origin
     system = assemble_ever(model)
     names = (*system.surfaces[: len(system.bodies)], *system.motions.names)
+    if not names:
+        raise OutputError("history", "no bodies", "a run of bodies", "Read the fields and energies of the run itself.")
     found = bodies_by_state(table, names, Path("bodies"))
     count, folder = len(system.bodies), history.folder
-    has_fields = folder is not None and (folder / SERIES).exists()
     return Results(
         summary=history.summary,
         model=model,
@@ -60,7 +61,7 @@ def _results(history: History, origin: Model, population: Population) -> Results
         time=found["time"][:, 0],
         bodies={name: values[:, :count] for name, values in found.items()},
         energy={},
-        series=read_pvd(folder / SERIES) if folder is not None and has_fields else (),
+        series=() if folder is None or not (folder / SERIES).exists() else read_pvd(folder / SERIES),
         wholes={name: values[:, count:] for name, values in found.items()},
         contact_counts=np.zeros(0),
         folder=Path() if folder is None else folder,

@@ -60,7 +60,7 @@ def _draw_layers(layers: Axes, speeds: Axes, found: Statistics) -> None:
                 speeds.errorbar(curve, profile.place, xerr=off, color=colour, linestyle=line, label=label)
     speeds.set(xlabel="velocity [length/time]", ylabel=across)
     above: dict[str, Any] = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0)}
-    speeds.legend(ncols=3, fontsize=6.5, columnspacing=1.0, handlelength=2.2, **above)
+    speeds.legend(ncols=3, fontsize=6.5, columnspacing=1.0, handlelength=4.0, **above)
 
 
 def _draw_figures(axes: Axes, found: Statistics) -> None:

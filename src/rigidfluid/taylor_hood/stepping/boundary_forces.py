@@ -64,7 +64,8 @@ def boundary_forces(flow: BoundaryFlow) -> BoundaryForces:
     Returns
     -------
     BoundaryForces
-        Zero on periodic pieces. The sum over all pieces and bodies is that of all f: the momentum that the fluid loses.
+        Zero on periodic pieces. The sum over all pieces and bodies is that of all f: the momentum that the fluid loses,
+        with convection but for what the mesh leaves of the divergence.
 
     Notes
     -----

@@ -13,6 +13,7 @@ import pytest
 from mesh_tools import ball, box, ellipsoid, upright
 from typer.testing import CliRunner
 
+from rigidfluid.api import Simulation
 from rigidfluid.cli import app
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.mesh.adaptation.first_mesh import initial_mesh
@@ -136,6 +137,18 @@ def test_a_report_counts_what_was_kept(tmp_path: Path) -> None:
     assert figures.volume == pytest.approx(4.0 - rectangle.volume - disk.volume, rel=1e-12)
     assert figures.exact_volume == pytest.approx(4.0 - 0.18 - np.pi / 16.0, rel=1e-12)
     assert sum(figures.quality_histogram) == figures.cells
+
+
+def test_a_body_across_periodic_surfaces_is_whole(tmp_path: Path) -> None:
+    """Its figures are those of its image on the mesh, which is that of the run."""
+    sides = [{"on": side, "type": "periodic"} for side in ("left", "right")]
+    case = scene_from_dict(scene({**DISK, "position": [1.999999, 0.6], "radius": 0.2}, boundary=sides))
+    figures, _ = insert(case, tmp_path)
+    assert [surface.name for surface in figures.surfaces] == ["disk", "bottom", "top"]
+    disk = figures.surfaces[0]
+    assert disk.vertices_off < 1e-12
+    assert disk.volume == pytest.approx(np.pi * 0.04, rel=0.05)
+    assert figures.cells == len(Simulation(case).state.mesh.cells)
 
 
 def test_level_sets_lose_corners(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from scenes import wet_tables
 
 import rigidfluid
 from rigidfluid import api
-from rigidfluid.api import Model, Simulation, load_results, measure_statistics, model_of
+from rigidfluid.api import Model, Simulation, load_results, measure_statistics, model_of, scene_from_dict
 from rigidfluid.errors import OutputError
 from rigidfluid.post.statistics import statistics
 
@@ -77,6 +78,14 @@ def test_a_run_that_writes_fields_has_the_fluid_in_its_profile(tmp_path: Path) -
     assert found[0]["suspension_stress"]["total"]["pressure"][0] is not None
 
 
+def test_a_run_without_bodies_has_none() -> None:
+    tables = wet_tables({"position": [1.0, 1.0]}, mesh={"size": 0.5, "size_body": 0.5})
+    simulation = Simulation(scene_from_dict(tables | {"body": []}))
+    simulation.step()
+    with pytest.raises(OutputError, match="no bodies"):
+        measure_statistics(simulation)
+
+
 def test_a_history_that_does_not_know_its_bodies_asks_for_the_simulation() -> None:
     run = Simulation(scene(end=0.05))
     run.go()
@@ -94,14 +103,17 @@ def test_a_history_that_does_not_know_its_bodies_asks_for_the_simulation() -> No
 def test_the_programs_of_the_page_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With a quicker scene of the name that they load."""
+    """With a quicker scene of the name that they load, and folders of the names that they read."""
     monkeypatch.chdir(tmp_path)
     slow = [one | {"velocity": [0.2 * speed for speed in one["velocity"]]} for one in BALLS]
     quick = dry_scene(SPRING, *slow, end=3.0, step=1e-2)
     rigidfluid.run(quick, Path("out/hundred_disks"))
+    sheared = tomllib.loads((ROOT / "scenes" / "sheared_cell.toml").read_text("utf-8"))
+    sheared["output"]["walls"] = True
+    rigidfluid.run(scene_from_dict(sheared), Path("out/sheared_cell"))
     monkeypatch.setattr(api, "load_scene", lambda _: quick)
     programs = [block.text for block in page_blocks(ROOT / "docs" / "statistics.md") if block.language == "python"]
     for program in programs:
         exec(compile(program, "statistics.md", "exec"), {})
-    assert len(programs) == 2
+    assert len(programs) == 3
     assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == ["1.0", "2.0", "3.0"]

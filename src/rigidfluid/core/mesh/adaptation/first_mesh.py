@@ -1,7 +1,9 @@
-"""The first mesh of a scene, which in a periodic domain may be cut open first where no body hardly reaches beyond."""
+"""The first mesh of a scene; in a periodic domain it is cut open elsewhere where a body hardly reaches beyond."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 
 import numpy as np
@@ -37,20 +39,21 @@ def initial_mesh(
     fluid_domain: FluidDomain,
     sizes: Sizes,
     inserter: Inserter = BY_SHAPE,
+    watch: Callable[[str], AbstractContextManager[None]] = lambda _: nullcontext(),
 ) -> Mesh:
     """First mesh of a scene: made in the ``inserter``'s way, then graded by the wanted size like every later one.
 
-    Markers are surface numbers, as in :func:`~rigidfluid.core.mesh.generation.meshing.generate_mesh`. Raises MeshError
-    where no valid mesh can be made.
+    Markers are surface numbers, as in :func:`~rigidfluid.core.mesh.generation.meshing.generate_mesh`. ``watch`` times a
+    stage by its name, "insertion" and "grading". Raises MeshError where no valid mesh can be made.
     """
     domain = fluid_domain.domain
-    if not domain.periodic:
-        return remesh(inserted_mesh(fluid_domain, sizes, inserter), fluid_domain, sizes)
     failures = []
-    for share in SLIDES if is_same_when_slid(domain) else SLIDES[:1]:
+    for share in SLIDES if domain.periodic and is_same_when_slid(domain) else SLIDES[:1]:
         try:
-            mesh = _inserted_periodic(fluid_domain, sizes, inserter, share * domain.lattice.sum(axis=0))
-            return remesh(mesh, fluid_domain.placed_on(mesh), sizes)
+            with watch("insertion"):
+                mesh = _inserted(fluid_domain, sizes, inserter, share)
+            with watch("grading"):
+                return remesh(mesh, fluid_domain.placed_on(mesh), sizes)
         except MeshError as error:
             failures.append(error)
     raise failures[0]
@@ -62,10 +65,13 @@ def is_same_when_slid(domain: Domain) -> bool:
     return all(plane is not None and not (domain.lattice @ plane.unit_normal).any() for plane in planes)
 
 
-def _inserted_periodic(fluid_domain: FluidDomain, sizes: Sizes, inserter: Inserter, slid: FloatArray) -> Mesh:
-    """The first mesh of a periodic domain, well cut, before it is graded; its surfaces were first ``slid`` (d,) along
-    the periods [length]."""
+def _inserted(fluid_domain: FluidDomain, sizes: Sizes, inserter: Inserter, share: float) -> Mesh:
+    """The first mesh before it is graded; that of a periodic domain is well cut, and its surfaces were first slid by a
+    ``share`` of the periods."""
     domain, pose = fluid_domain.domain, fluid_domain.pose
+    if not domain.periodic:
+        return inserted_mesh(fluid_domain, sizes, inserter)
+    slid = share * domain.lattice.sum(axis=0)
     winding = replace(fluid_domain, pose=replace(pose, position=pose.position - slid)).periods_outside()
     position = pose.position - winding @ domain.lattice
     inside, around = (replace(fluid_domain, pose=replace(pose, position=at)) for at in (position - slid, position))
