@@ -66,7 +66,7 @@ class TaylorHoodBackend(FluidBackend):
         self._numbering: Numbering | None = None
         self._latest: tuple[BoolArray, Dimensionless] | None = None
         self._latest_matrix: tuple[tuple[FluidState, Mesh, Step], CoupledMatrix] | None = None
-        self._latest_attempt: tuple[FluidState, FluidState] | None = None
+        self._latest_attempt: tuple[FluidState, float, FluidState] | None = None
         self._insides: Insides | None = None
 
     @abstractmethod
@@ -303,10 +303,12 @@ class TaylorHoodBackend(FluidBackend):
         discretisation = self._discretisation(mesh, step.prescribed)
         matrix = self._matrix(discretisation, fluid, mesh, step)
         attempt = self._latest_attempt
-        guess = attempt[1] if attempt is not None and attempt[0] is fluid else None
+        guess = None  # that of a longer step, which was rejected, may be far off
+        if attempt is not None and attempt[0] is fluid and attempt[1] == step.time:
+            guess = attempt[2]
         equations = Equations(discretisation, matrix, fluid, mesh, on_mesh(step, mesh))
         advanced = advance(equations, tolerance, guess)
-        self._latest_attempt = fluid, advanced.fluid
+        self._latest_attempt = fluid, step.time, advanced.fluid
         return advanced
 
     def _matrix(self, discretisation: Discretisation, fluid: FluidState, mesh: Mesh, step: Step) -> CoupledMatrix:

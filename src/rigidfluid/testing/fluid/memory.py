@@ -76,6 +76,13 @@ class MemoryContract(FluidContract):
         flow.after(0.5, points=flow.mesh.points, push=np.ones_like(first.step.load))
         self._assert_close_figures(self.stir(flow).advance, first.advance)
 
+    def test_a_rejected_step_that_went_far_off_misleads_no_shorter_one(self, dimension: int) -> None:
+        """A force of another order has thrown the bodies away: where they were is no guess for the next try."""
+        flow = self.stirred(dimension, steps=2)
+        first = self.stir(flow)
+        flow.after(0.5, points=flow.mesh.points, push=np.full_like(first.step.load, 1e12))
+        self._assert_close_figures(self.stir(flow).advance, first.advance)
+
     def test_going_on_from_a_checkpoint_is_bit_identical(self, dimension: int) -> None:
         """After ``forget``, a new backend with the state from a file takes the same two steps as the old one."""
         flow = self.stirred(dimension, steps=3)
