@@ -49,14 +49,18 @@ def bend(layers: int, angle: float | None = ANGLE) -> Mesh:
 
 def flow_in_bend(layers: int) -> Flow:
     """Steady Stokes flow by a pressure on the first of the bend's ends, none on the other."""
+    return Flow.start(_backend(0, bend_faces(NoSlip)), bend(layers), nobody(2)).after(None)
+
+
+def bend_faces(inner: type[Any]) -> tuple[BoundaryCondition, ...]:
+    """Conditions on the bend, of the class ``inner`` on its inner wall."""
     ends = np.array([0.0, 1.0]), np.array([np.sin(ANGLE), -np.cos(ANGLE)])
-    faces = (
-        NoSlip(0, "inner", None),
+    return (
+        inner(0, "inner", None),
         NoSlip(1, "outer", None),
         PrescribedPressure(2, "start", ends[0], lambda _, at: np.full(len(at), DROP)),
         PrescribedPressure(3, "end", ends[1]),
     )
-    return Flow.start(_backend(0, faces), bend(layers), nobody(2)).after(None)
 
 
 def speed_in_bend(radius: FloatArray) -> FloatArray:

@@ -18,6 +18,7 @@ from rigidfluid.core.mechanics.coulomb import (
 )
 from rigidfluid.core.model.contacts import normal_part, tangential_part
 from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.latest import Latest
 from rigidfluid.core.model.pair_formula import PairFormula, PairSprings
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Loads, Motion
@@ -133,7 +134,7 @@ class SpringDashpotLaw(ForceLaw):
         super().__init__(options, range, loads)
         self.friction = self.options.friction
         self.sticking = self.options.tangential_stiffness is not None
-        self._pressed: tuple[Contacts, Motion, _Pressed] | None = None
+        self._pressed = Latest[_Pressed]()
         self._turning = TurningFriction(self.options.rolling_friction, self.options.twisting_friction)
         self.rolling = self.couples = bool(self._turning.keys)
         self.round_option = self._turning.keys[0] if self.rolling else ""
@@ -189,9 +190,7 @@ class SpringDashpotLaw(ForceLaw):
 
     def _pressed_in(self, contacts: Contacts, motion: Motion) -> _Pressed:
         """Forces in the contacts, kept for the same records: each substep asks two to four times."""
-        if self._pressed is None or self._pressed[0] is not contacts or self._pressed[1] is not motion:
-            self._pressed = contacts, motion, self._press(contacts, motion)
-        return self._pressed[2]
+        return self._pressed.answer((contacts, motion), lambda: self._press(contacts, motion))
 
     def _press(self, contacts: Contacts, motion: Motion) -> _Pressed:
         overlap = self._overlap(contacts)

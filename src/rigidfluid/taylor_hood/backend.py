@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import operator
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import replace
@@ -15,6 +14,7 @@ from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.model.flow_error import ErrorRate, MeshVelocity, RefinedFlow, Refinement
 from rigidfluid.core.model.fluid_backend import Filling, FluidBackend
+from rigidfluid.core.model.latest import Latest
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Advance, Fields, FluidState, InsideFields, Mesh, Pose, Response, Step, Twist
 from rigidfluid.taylor_hood.elements.numbering import Numbering
@@ -65,7 +65,7 @@ class TaylorHoodBackend(FluidBackend):
         super().__init__(options, problem)
         self._numbering: Numbering | None = None
         self._latest: tuple[BoolArray, Dimensionless] | None = None
-        self._latest_matrix: tuple[tuple[FluidState, Mesh, Step], CoupledMatrix] | None = None
+        self._latest_matrix = Latest[CoupledMatrix]()
         self._latest_attempt: tuple[FluidState, float, FluidState] | None = None
         self._insides: Insides | None = None
 
@@ -278,7 +278,8 @@ class TaylorHoodBackend(FluidBackend):
     @final
     def forget(self) -> None:
         self.drop_factors()
-        self._latest = self._latest_matrix = self._latest_attempt = None
+        self._latest = self._latest_attempt = None
+        self._latest_matrix = Latest()
 
     def numbering_of(self, mesh: Mesh) -> Numbering:
         """A topology is known by its array of cells."""
@@ -315,10 +316,9 @@ class TaylorHoodBackend(FluidBackend):
         """A step is asked for its solution and then for its responses: its matrix is made once."""
         from rigidfluid.taylor_hood.stepping.advance import step_matrix
 
-        asked = fluid, mesh, step
-        if self._latest_matrix is None or any(map(operator.is_not, self._latest_matrix[0], asked)):
-            self._latest_matrix = asked, step_matrix(discretisation, fluid, mesh, on_mesh(step, mesh))
-        return self._latest_matrix[1]
+        return self._latest_matrix.answer(
+            (fluid, mesh, step), lambda: step_matrix(discretisation, fluid, mesh, on_mesh(step, mesh))
+        )
 
     def _scalar_equations(self, mesh: Mesh) -> ScalarEquations:
         from rigidfluid.taylor_hood.elements.scalar_surfaces import ScalarSurfaces

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from curved_channels import ANGLE, DROP, INNER, OUTER, bend
+from curved_channels import ANGLE, DROP, INNER, OUTER, bend, bend_faces
 from curved_channels import VISCOSITY as BEND_VISCOSITY
 from sheared_materials import materials
 
@@ -83,14 +83,7 @@ def test_a_viscosity_that_varies_is_that_of_the_shear_rate(name: str, dimension:
 
 
 def forces_in_bend(layers: int, inner: type[Any]) -> BoundaryForces:
-    ends = np.array([0.0, 1.0]), np.array([np.sin(ANGLE), -np.cos(ANGLE)])
-    faces = (
-        inner(0, "inner", None),
-        NoSlip(1, "outer", None),
-        PrescribedPressure(2, "start", ends[0], lambda _, at: np.full(len(at), DROP)),
-        PrescribedPressure(3, "end", ends[1]),
-    )
-    return forces_of(FluidProblem(2, 0, 1.0, Newtonian(BEND_VISCOSITY), False, faces), bend(layers))
+    return forces_of(FluidProblem(2, 0, 1.0, Newtonian(BEND_VISCOSITY), False, bend_faces(inner)), bend(layers))
 
 
 def exact_in_bend(inner: type[Any]) -> FloatArray:

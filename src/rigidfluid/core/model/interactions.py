@@ -11,6 +11,7 @@ import numpy as np
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.force_law import Between, ForceLaw, Overlap, Sign
+from rigidfluid.core.model.latest import Latest
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Motion
 
@@ -88,8 +89,7 @@ class SumOfLaws(ForceLaw):
         self.sticking = any(law.sticking for law in laws)
         self.rolling = any(law.rolling for law in laws)
         self.couples = any(law.couples for law in laws)
-        self._shared: tuple[Contacts | None, list[_Share]] = None, []
-        self._parts: tuple[Motion | None, list[tuple[BoolArray, Motion]]] = None, []
+        self._shared, self._parts = Latest[list[_Share]](), Latest[list[tuple[BoolArray, Motion]]]()
 
     @property
     def ranges(self) -> tuple[float, ...]:
@@ -153,19 +153,16 @@ class SumOfLaws(ForceLaw):
 
     def _part(self, motion: Motion, chosen: BoolArray) -> Motion:
         """Motion in some of the contacts, the same record for the same choice: laws may keep what they computed."""
-        if self._parts[0] is not motion:
-            self._parts = motion, []
-        for known, part in self._parts[1]:
+        parts = self._parts.answer((motion,), list)
+        for known, part in parts:
             if known is chosen:
                 return part
-        self._parts[1].append((chosen, motion.select(chosen)))
-        return self._parts[1][-1][1]
+        parts.append((chosen, motion.select(chosen)))
+        return parts[-1][1]
 
     def _shares(self, contacts: Contacts) -> list[_Share]:
         """Each interaction that acts here, its contacts, and which they are; kept for the same contacts."""
-        if self._shared[0] is not contacts:
-            self._shared = contacts, list(self._divided(contacts))
-        return self._shared[1]
+        return self._shared.answer((contacts,), lambda: list(self._divided(contacts)))
 
     def _divided(self, contacts: Contacts) -> Iterator[_Share]:
         for interaction in self.interactions:

@@ -57,9 +57,10 @@ def layer_integrals(
     they were straight, and integrated as they are.
     """
     volume, moved = np.zeros(layers), np.zeros((layers, fields.points.shape[1]))
+    height = (fields.points[:, axis] - lower) / thickness
     for start in range(0, len(fields.cells), _AT_ONCE):
         some = replace(fields, cells=fields.cells[start : start + _AT_ONCE])
-        _add_cells(some, (fields.points[:, axis] - lower) / thickness, volume, moved)
+        _add_cells(some, height, volume, moved)
     return volume, moved
 
 

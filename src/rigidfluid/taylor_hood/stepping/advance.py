@@ -91,8 +91,9 @@ def _measured(equations: Equations, solution: Solution, on_faces: FloatArray, li
     midway = 0.5 * (equations.mesh.geometry + matrix.points)
     begins = problem.inertia and step.derivative[2] == 0.0
     at_faces = FaceFlow(surfaces, problem.inert_density, at, velocity, equations.mesh_velocity)
+    end = state_at_end(equations, solution)
     return Advance(
-        fluid=state_at_end(equations, solution),
+        fluid=end,
         twist=motion_twist(solution),
         hydrodynamic_wrench=hydrodynamic_wrench(equations, solution),
         kinetic_energy=kinetic_energy(discretisation, matrix.points, velocity),
@@ -104,8 +105,8 @@ def _measured(equations: Equations, solution: Solution, on_faces: FloatArray, li
         grad_div=grad_div_dissipation(discretisation, matrix, velocity),
         source_power=_source_power(equations, velocity),
         stress_power=stress_power(discretisation, matrix.points, velocity, mean) if begins else None,
-        stresslet=_stresslets(equations, solution) if step.stresslets else None,
-        boundary_forces=_boundary_forces(equations, solution) if step.boundary_forces else None,
+        stresslet=_stresslets(equations, solution, end) if step.stresslets else None,
+        boundary_forces=_boundary_forces(equations, solution, end) if step.boundary_forces else None,
         cell_errors=_cell_errors(equations, solution) if step.cell_errors and not step.provisional else None,
     )
 
@@ -124,18 +125,18 @@ def _cell_errors(equations: Equations, solution: Solution) -> FloatArray:
     return cell_errors(flow, discretisation.problem.material)
 
 
-def _stresslets(equations: Equations, solution: Solution) -> FloatArray:
-    """Stresslets of the bodies (n, d, d), for the pressure that the state has."""
+def _stresslets(equations: Equations, solution: Solution, end: FluidState) -> FloatArray:
+    """Stresslets of the bodies (n, d, d), for the pressure of the state at the ``end``."""
     surfaces, points = equations.discretisation.surfaces, equations.matrix.node_points
     found = stresslets(surfaces, -solution.reaction, points, equations.step.pose.position)
     if not surfaces.enclosed:
         return found
     volumes = body_volumes(surfaces, equations.mesh, points)
-    return np.asarray(found - _raised(equations, solution) * volumes[:, None, None] * np.eye(points.shape[1]))
+    return np.asarray(found - _raised(solution, end) * volumes[:, None, None] * np.eye(points.shape[1]))
 
 
-def _boundary_forces(equations: Equations, solution: Solution) -> BoundaryForces:
-    """Forces on the pieces of the boundary, for the pressure that the state has."""
+def _boundary_forces(equations: Equations, solution: Solution, end: FluidState) -> BoundaryForces:
+    """Forces on the pieces of the boundary, for the pressure of the state at the ``end``."""
     flow = BoundaryFlow(
         surfaces=equations.discretisation.surfaces,
         mesh=equations.mesh,
@@ -145,15 +146,14 @@ def _boundary_forces(equations: Equations, solution: Solution) -> BoundaryForces
         velocity=solution.velocity,
         pressure=solution.pressure,
         reaction=solution.reaction,
-        raised=_raised(equations, solution),
+        raised=_raised(solution, end),
     )
     return boundary_forces(flow)
 
 
-def _raised(equations: Equations, solution: Solution) -> float:
-    """Pressure of the state less that of the solution, the same everywhere [force/length^(d-1)]."""
-    centred = centre_pressure(equations.discretisation, equations.matrix.points, solution.pressure)
-    return float(centred[0] - solution.pressure[0])
+def _raised(solution: Solution, end: FluidState) -> float:
+    """Pressure of the state at the ``end`` less that of the solution, the same everywhere [force/length^(d-1)]."""
+    return float(end["pressure"][0] - solution.pressure[0])
 
 
 def hydrodynamic_wrench(equations: Equations, solution: Solution) -> Wrench:

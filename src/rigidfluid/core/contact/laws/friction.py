@@ -18,6 +18,7 @@ from rigidfluid.core.mechanics.coulomb import (
 )
 from rigidfluid.core.model.contacts import normal_part, tangential_part
 from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.latest import Latest
 from rigidfluid.core.model.types import Contacts, Motion
 from rigidfluid.core.model.wrapped_law import WrappedLaw, layer
 from rigidfluid.errors import SceneError
@@ -90,8 +91,7 @@ class Friction(WrappedLaw):
             self.round_option = rubbing.turning.keys[0]
         restitution = layer(Restitution, law)
         self._restitution = 1.0 if restitution is None else restitution.restitution
-        self._stiffness: tuple[Contacts | None, FloatArray] = None, np.zeros(0)
-        self._pressed: tuple[Contacts, Motion, _Pressed] | None = None
+        self._stiffness, self._pressed = Latest[FloatArray](), Latest[_Pressed]()
 
     def damping(self, contacts: Contacts, motion: Motion) -> FloatArray:
         """Damping of the law, and the dashpots along the surfaces on ``body_a``, (m, d) [force]."""
@@ -100,11 +100,7 @@ class Friction(WrappedLaw):
 
     def tangential_stiffness(self, contacts: Contacts) -> FloatArray:
         """k_t within range, (m,) [force/length]."""
-        if self._stiffness[0] is not contacts:
-            given = self._rubbing.stiffness
-            stiffness = self._share(contacts) if given is None else np.full_like(contacts.gap, given)
-            self._stiffness = contacts, np.where(contacts.gap < self.range, stiffness, 0.0)
-        return self._stiffness[1]
+        return self._stiffness.answer((contacts,), lambda: self._stiffness_in(contacts))
 
     def held_displacement(self, contacts: Contacts, motion: Motion, displacement: FloatArray) -> FloatArray:
         """ξ with a force of at most μ |F_n|, the nearest along that force, (m, d) [length]."""
@@ -130,9 +126,7 @@ class Friction(WrappedLaw):
 
     def _pressed_in(self, contacts: Contacts, motion: Motion) -> _Pressed:
         """Forces in the contacts, kept for the same records: each substep asks four times."""
-        if self._pressed is None or self._pressed[0] is not contacts or self._pressed[1] is not motion:
-            self._pressed = contacts, motion, self._press(contacts, motion)
-        return self._pressed[2]
+        return self._pressed.answer((contacts, motion), lambda: self._press(contacts, motion))
 
     def _press(self, contacts: Contacts, motion: Motion) -> _Pressed:
         damping, stiffness = self.law.damping(contacts, motion), self.tangential_stiffness(contacts)
@@ -141,6 +135,11 @@ class Friction(WrappedLaw):
         most = self.friction * normal_force
         dashpots = sliding_friction(coefficient, most, tangential_part(motion.velocity, contacts))
         return _Pressed(damping, Bedding(stiffness, coefficient, normal_force), most, dashpots)
+
+    def _stiffness_in(self, contacts: Contacts) -> FloatArray:
+        given = self._rubbing.stiffness
+        stiffness = self._share(contacts) if given is None else np.full_like(contacts.gap, given)
+        return np.where(contacts.gap < self.range, stiffness, 0.0)
 
     def _share(self, contacts: Contacts) -> FloatArray:
         """STIFFNESS_RATIO of the force at the smallest gap, over the way from range to there, (m,) [force/length]."""

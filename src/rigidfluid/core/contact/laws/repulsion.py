@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import replace
-from operator import attrgetter, is_
-from typing import Annotated, Any, ClassVar, Literal
+from operator import attrgetter
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, ValidationError, ValidatorFunctionWrapHandler, WrapValidator
@@ -14,6 +14,7 @@ from rigidfluid.core.contact.laws.loads import require_loads
 from rigidfluid.core.contact.laws.work_to_stop import work_to_stop
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.model.force_law import ForceLaw
+from rigidfluid.core.model.latest import Latest
 from rigidfluid.core.model.pair_formula import Formula, PairFormula
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Loads
@@ -64,7 +65,7 @@ class Repulsion(ForceLaw):
     def __init__(self, options: PartOptions, range: float, loads: Loads | None = None) -> None:
         super().__init__(options, range, loads)
         self._held: dict[tuple[bytes, ...], FloatArray] = {}
-        self._latest: tuple[tuple[Any, ...], FloatArray] | None = None
+        self._latest = Latest[FloatArray]()
         if AUTO in (self.options.epsilon, self.options.epsilon_wall):
             self.loads = require_loads(loads, range)
 
@@ -109,10 +110,7 @@ class Repulsion(ForceLaw):
     def epsilon(self, contacts: Contacts) -> FloatArray:
         """Stiffness parameter ε of each contact, (m,) [length^p/force]; infinite with ``auto`` between two bodies of
         prescribed twist. It does not depend on the gap, and is kept for contacts that differ in that alone."""
-        columns = _columns(contacts)
-        if self._latest is None or not all(map(is_, columns, self._latest[0])):
-            self._latest = columns, self._each_epsilon(contacts)
-        return self._latest[1]
+        return self._latest.answer(_columns(contacts), lambda: self._each_epsilon(contacts))
 
     def _each_epsilon(self, contacts: Contacts) -> FloatArray:
         between, at_walls = self.options.epsilon, self.options.epsilon_wall
