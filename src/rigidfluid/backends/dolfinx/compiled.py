@@ -6,7 +6,9 @@ from typing import Any
 
 from dolfinx import fem
 
-_COMPILER = {"cffi_extra_compile_args": ["-O3", "-march=native"]}
+# Of several processes that need a form at once, one compiles it and the others wait. A form of curved cells in 3D takes
+# longer than the 10 s that DOLFINx waits for unless told.
+_COMPILER = {"cffi_extra_compile_args": ["-O3", "-march=native"], "timeout": 300}
 
 
 def compiled(form: Any) -> Any:
