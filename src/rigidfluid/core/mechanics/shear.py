@@ -30,6 +30,18 @@ class Shear(NamedTuple):
         """Component (…) of stresses Σ (…, d, d), ``one``·Σ·``other`` of two directions (d,)."""
         return np.asarray(np.einsum("i,...ij,j->...", one, stress, other))
 
+    def velocity(self, position: FloatArray) -> FloatArray:
+        """Velocity γ (x·n) t (…, d) of the shear at positions x (…, d), but for one that is the same everywhere
+        [length/time]."""
+        return self.rate * (position @ self.across)[..., None] * self.along
+
+    def normal_differences(self, stress: FloatArray) -> FloatArray:
+        """Normal stress differences (…, d - 1) of stresses Σ (…, d, d), N₁ = t·Σ·t - n·Σ·n and in 3D N₂ = n·Σ·n -
+        w·Σ·w, w along the vorticity [force/length^(d-1)]."""
+        along, across = (self.part(way, way, stress) for way in (self.along, self.across))
+        vorticity = np.trace(stress, axis1=-2, axis2=-1) - along - across
+        return np.stack([along - across, across - vorticity], axis=-1)[..., : stress.shape[-1] - 1]
+
     def added_viscosity(self, stress: FloatArray) -> FloatArray | None:
         """Viscosity t·Σ·n/(μγ) (…) that stresses Σ (…, d, d) add to the fluid's, over it; None where it varies [1]."""
         return None if self.stress is None else self.part(self.along, self.across, stress) / self.stress

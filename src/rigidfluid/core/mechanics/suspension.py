@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
+from rigidfluid.core.mechanics.shear import Shear
 
 
 def mean_velocity(velocity: FloatArray) -> FloatArray:
@@ -12,9 +13,11 @@ def mean_velocity(velocity: FloatArray) -> FloatArray:
     return np.asarray(velocity.mean(axis=-2))
 
 
-def velocity_fluctuations(velocity: FloatArray) -> FloatArray:
-    """Standard deviation (…, d) of velocities (…, n, d) from their mean over the bodies [length/time]."""
-    return np.asarray(velocity.std(axis=-2))
+def velocity_fluctuations(velocity: FloatArray, position: FloatArray, shear: Shear | None) -> FloatArray:
+    """Standard deviation (…, d) of velocities (…, n, d) from their mean over the bodies, and from a shear at their
+    positions (…, n, d) [length/time]."""
+    own = velocity if shear is None else velocity - shear.velocity(position)
+    return np.asarray(own.std(axis=-2))
 
 
 def mean_gap(gap: FloatArray) -> FloatArray:

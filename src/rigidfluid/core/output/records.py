@@ -105,7 +105,8 @@ def _statistics_columns(dimension: int) -> Iterator[str]:
     yield from ("bodies", "volume_fraction", *velocity, *(f"{name}_fluctuation" for name in velocity))
     yield from ("gap", "least_gap", "least_wall_gap", "coordination", "contacts")
     yield from (f"contact_{row}{column}" for row in axes for column in axes)
-    yield from (*_symmetric_components("stress_", dimension), "relative_viscosity")
+    differences = ("first_normal_difference", "second_normal_difference")[: dimension - 1]
+    yield from (*_symmetric_components("stress_", dimension), "relative_viscosity", *differences)
 
 
 def _components(name: str, dimension: int) -> tuple[str, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
-from rigidfluid.core.mechanics.shear import shear_of_walls
+from rigidfluid.core.mechanics.shear import Shear, shear_of_walls
 from rigidfluid.core.mechanics.suspension import (
     contact_stress,
     coordination,
@@ -27,23 +27,24 @@ def statistics_rows(system: System, state: State, time: float, forces: FloatArra
     count, volume = int(free.sum()), float(system.domain.volume)
     if count == 0:
         return []
-    velocity, near, acting = state.twist.velocity[free], state.contacts, system.acting(state.contacts)
+    shear, velocity, position = shear_of_walls(system), state.twist.velocity[free], state.pose.position[free]
+    near, acting = state.contacts, system.acting(state.contacts)
     number = np.where(moves, np.cumsum(moves) - 1, -1)
     a, b = number[near.body_a], number[near.body_b]
     paired = (a >= 0) & (b >= 0)
     by_contacts = contact_stress(forces[paired], _arms(state, paired), volume)
-    total, viscosity = _suspension(system, state, free, by_contacts)
+    total = _total_stress(state, free, by_contacts, volume)
     return [
         (
             *(time, state.count, count, float(system.volumes[free].sum()) / volume),
             *mean_velocity(velocity).tolist(),
-            *velocity_fluctuations(velocity).tolist(),
+            *velocity_fluctuations(velocity, position, shear).tolist(),
             float(mean_gap(state.gaps[free])),
             *(float(near.gap[chosen].min(initial=np.inf)) for chosen in (paired, (a >= 0) ^ (b >= 0))),
             *(coordination(count, a[acting], b[acting]), len(acting)),
             *by_contacts.ravel().tolist(),
             *total[np.triu_indices(system.dimension)].tolist(),
-            viscosity,
+            *_shear_figures(shear, total),
         )
     ]
 
@@ -56,11 +57,17 @@ def _arms(state: State, paired: BoolArray) -> FloatArray:
     return arms if near.shift is None else arms - near.shift[paired]
 
 
-def _suspension(system: System, state: State, free: BoolArray, by_contacts: FloatArray) -> tuple[FloatArray, float]:
-    """Stress of the ``free`` bodies (d, d) and relative viscosity, not a number where they are not known."""
+def _total_stress(state: State, free: BoolArray, by_contacts: FloatArray, volume: float) -> FloatArray:
+    """Stress of the ``free`` bodies (d, d), not a number without stresslets [force/length^(d-1)]."""
     if state.stresslet is None:
-        return np.full_like(by_contacts, np.nan), np.nan
-    total = state.stresslet[free].sum(axis=0) / float(system.domain.volume) + symmetric(by_contacts)
-    shear = shear_of_walls(system)
-    added = None if shear is None else shear.added_viscosity(total)
-    return total, np.nan if added is None else 1.0 + float(added)
+        return np.full_like(by_contacts, np.nan)
+    return np.asarray(state.stresslet[free].sum(axis=0) / volume + symmetric(by_contacts))
+
+
+def _shear_figures(shear: Shear | None, total: FloatArray) -> tuple[float, ...]:
+    """Relative viscosity and normal stress differences of the ``total`` stress of the bodies (d, d), not a number where
+    they are not defined."""
+    if shear is None:
+        return (np.nan,) * len(total)
+    added = shear.added_viscosity(total)
+    return (np.nan if added is None else 1.0 + float(added), *shear.normal_differences(total).tolist())

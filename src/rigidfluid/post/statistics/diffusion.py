@@ -14,8 +14,8 @@ LONGEST = 0.5
 
 
 class Diffusion(NamedTuple):
-    """Mean square displacement (l, d) of bodies from their common motion after each ``lag`` (l,), and half its slope
-    over the longer half of the lags, D (d,) [length², time, length²/time]."""
+    """Mean square displacement (l, d) of bodies, without their common motion and a shear, after each ``lag`` (l,), and
+    half its slope over the longer half of the lags, D (d,) [length², time, length²/time]."""
 
     lag: FloatArray
     displacement: FloatArray
@@ -24,7 +24,7 @@ class Diffusion(NamedTuple):
 
 def diffusion(samples: Samples) -> Diffusion:
     """Mean square displacement and D = slope/2; states must be at even times, as they nearly are."""
-    own = samples.position - samples.position.mean(axis=1, keepdims=True)
+    own = samples.own_path
     lags = np.arange(1, max(2, int(LONGEST * len(own)) + 1))
     lags = lags[lags < len(own)]
     square = np.array([((own[lag:] - own[:-lag]) ** 2).mean(axis=(0, 1)) for lag in lags])

@@ -10,6 +10,7 @@ from rigidfluid.post.reports.units import Units
 from rigidfluid.post.statistics.blocks import Mean
 from rigidfluid.post.statistics.contact_network import ContactNetwork
 from rigidfluid.post.statistics.diffusion import Diffusion
+from rigidfluid.post.statistics.gap_distribution import GapDistribution
 from rigidfluid.post.statistics.pair_distribution import PairDistribution
 from rigidfluid.post.statistics.profiles import Profile
 from rigidfluid.post.statistics.samples import Samples
@@ -24,6 +25,7 @@ class Statistics(NamedTuple):
     units: Units
     samples: Samples
     gap: Mean
+    gaps: GapDistribution
     velocity: Mean
     fluctuations: Mean
     pairs: PairDistribution
@@ -44,6 +46,7 @@ class Statistics(NamedTuple):
             "to": float(samples.time[-1]),
             "volume_fraction": samples.fraction,
             "gap": self.gap.to_list(),
+            "gap_distribution": {"share": self.gaps.share.tolist(), "gap": self.gaps.gap.to_list()},
             "velocity": self.velocity.to_list(),
             "velocity_fluctuations": self.fluctuations.to_list(),
             "diffusion": {
@@ -58,6 +61,7 @@ class Statistics(NamedTuple):
                 "place": layers.place.tolist(),
                 "fraction": layers.fraction.to_list(),
                 "velocity": layers.velocity.to_list(),
+                "velocity_fluctuations": layers.fluctuations.to_list(),
                 "fluid_velocity": None if layers.fluid is None else layers.fluid.to_list(),
                 "mixture_velocity": None if layers.mixture is None else layers.mixture.to_list(),
             },

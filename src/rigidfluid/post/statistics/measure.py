@@ -25,6 +25,7 @@ from rigidfluid.post.statistics.contact_stresses import contact_stresses
 from rigidfluid.post.statistics.diffusion import diffusion
 from rigidfluid.post.statistics.figures import Statistics
 from rigidfluid.post.statistics.fluid_layers import OUTPUTS, fluid_layers
+from rigidfluid.post.statistics.gap_distribution import gap_distribution
 from rigidfluid.post.statistics.pair_distribution import pair_distribution
 from rigidfluid.post.statistics.plot import statistics_plot
 from rigidfluid.post.statistics.profiles import LAYERS, profile
@@ -116,13 +117,14 @@ def measured(
     stress = None
     if stresslets:
         by_contacts = contact_stresses(results, rows.selected(rows.paired))
-        stress = suspension_stress(samples, results.system, stresslets, by_contacts)
+        stress = suspension_stress(samples, stresslets, by_contacts)
     return Statistics(
         results.units,
         samples,
         mean(mean_gap(samples.gap)),
+        gap_distribution(samples),
         mean(mean_velocity(samples.velocity)),
-        mean(velocity_fluctuations(samples.velocity)),
+        mean(velocity_fluctuations(samples.velocity, samples.position, samples.shear)),
         pair_distribution(samples),
         structure_factor(samples),
         diffusion(samples),

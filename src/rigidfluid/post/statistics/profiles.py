@@ -18,13 +18,15 @@ LAYERS = 20
 
 class Profile(NamedTuple):
     """Layers across an axis: their middles ``place`` (l,) [length], the ``fraction`` of bodies in them (l,) [1], and
-    the mean ``velocity`` (l, d) of that part of bodies [length/time], not a number where there are none; with fields
-    those of the ``fluid`` and of both, the ``mixture``, with bodies that do not move."""
+    the mean ``velocity`` (l, d) of that part of bodies [length/time], not a number where there are none, and the
+    ``fluctuations`` (l, d) of the velocities of their centres from the mean in the layer; with fields those of the
+    ``fluid`` and of both, the ``mixture``, with bodies that do not move."""
 
     axis: int
     place: FloatArray
     fraction: Mean
     velocity: Mean
+    fluctuations: Mean
     fluid: Mean | None
     mixture: Mean | None
 
@@ -32,14 +34,15 @@ class Profile(NamedTuple):
 def profile(samples: Samples, axis: int, fluid: FluidLayers | None) -> Profile:
     """Profile across ``axis``, with bodies as balls of their volume, cut by the layers."""
     edges = np.linspace(samples.lower[axis], samples.upper[axis], LAYERS + 1)
-    solid, moved = _solid_layers(samples, edges, axis)
-    share = mean(solid / (samples.volume / LAYERS))
-    place, velocity = 0.5 * (edges[1:] + edges[:-1]), _velocity(moved, solid)
+    inside, moved = _solid_layers(samples, edges, axis)
+    volume = inside.sum(axis=2)
+    share, velocity = mean(volume / (samples.volume / LAYERS)), _velocity(moved, volume)
+    place, spread = 0.5 * (edges[1:] + edges[:-1]), _fluctuations(samples.velocity, inside)
     if fluid is None:
-        return Profile(axis, place, share, velocity, None, None)
-    then, moved_then = _solid_layers(fluid.samples, edges, axis)
-    mixture = _velocity(fluid.moved + moved_then, fluid.volume + then)
-    return Profile(axis, place, share, velocity, _velocity(fluid.moved, fluid.volume), mixture)
+        return Profile(axis, place, share, velocity, spread, None, None)
+    inside, moved = _solid_layers(fluid.samples, edges, axis)
+    mixture = _velocity(fluid.moved + moved, fluid.volume + inside.sum(axis=2))
+    return Profile(axis, place, share, velocity, spread, _velocity(fluid.moved, fluid.volume), mixture)
 
 
 def _velocity(moved: FloatArray, volume: FloatArray) -> Mean:
@@ -51,16 +54,26 @@ def _velocity(moved: FloatArray, volume: FloatArray) -> Mean:
     return Mean(velocity, np.divide(off, whole, out=np.full_like(velocity, np.nan), where=whole > 0.0))
 
 
+def _fluctuations(velocity: FloatArray, inside: FloatArray) -> Mean:
+    """Standard deviation (l, d) of velocities (s, n, d) of bodies from their mean in a layer, each counted by its
+    volume ``inside`` (s, l, n); not a number where there is nothing [length/time]."""
+    volume, near_zero = inside.sum(axis=2), velocity - velocity.mean(axis=(0, 1))
+    first, second = (np.einsum("sln,snd->sld", inside, near_zero**power) for power in (1, 2))
+    average = _velocity(first, volume).value
+    variance = _velocity(second - 2.0 * average * first + average**2 * volume[..., None], volume)
+    deviation = np.sqrt(np.maximum(variance.value, 0.0))
+    unknown = np.full_like(deviation, np.nan)
+    return Mean(deviation, np.divide(0.5 * variance.error, deviation, out=unknown, where=deviation > 0.0))
+
+
 def _solid_layers(samples: Samples, edges: FloatArray, axis: int) -> tuple[FloatArray, FloatArray]:
-    """Volume (s, l) of the bodies between the edges [length^d], and the integral (s, l, d) of the velocity U + ω × r of
-    their points over it [length^(d+1)/time]."""
+    """Volume (s, l, n) of each body between the edges [length^d], and the integral (s, l, d) of the velocity U + ω × r
+    of the points of all over it [length^(d+1)/time]."""
     turning = cross(samples.angular_velocity, np.broadcast_to(np.eye(samples.dimension)[axis], samples.velocity.shape))
-    volume, moved = np.zeros((len(samples.time), LAYERS)), np.zeros((len(samples.time), LAYERS, samples.dimension))
-    for place in _places(samples, axis):
-        inside, moment = _slices(samples, edges, place)
-        volume += inside.sum(axis=2)
-        moved += np.einsum("sln,snd->sld", inside, samples.velocity) + np.einsum("sln,snd->sld", moment, turning)
-    return volume, moved
+    slices = [_slices(samples, edges, place) for place in _places(samples, axis)]
+    inside, moment = (np.sum(parts, axis=0) for parts in zip(*slices, strict=True))
+    moved = np.einsum("sln,snd->sld", inside, samples.velocity) + np.einsum("sln,snd->sld", moment, turning)
+    return inside, moved
 
 
 def _places(samples: Samples, axis: int) -> Sequence[FloatArray]:

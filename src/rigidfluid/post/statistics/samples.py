@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.mechanics.shapes import equal_volume_radius
+from rigidfluid.core.mechanics.shear import Shear, shear_of_walls
 from rigidfluid.core.model.system import System
 from rigidfluid.errors import OutputError
 from rigidfluid.post.reports.results import Results
@@ -27,7 +29,7 @@ class Samples:
     length/time]; ``angular_velocity`` (s, n, k) [rad/time]; ``gap`` (s, n), of each body to its nearest surface
     [length]; ``radius`` (n,) of balls of the same volume [length]; ``name`` of each body; ``lower`` and ``upper`` (d,),
     corners of the domain [length]; ``volume`` of the domain with bodies [length^d]; ``period`` (d,) along each axis,
-    infinite between walls [length].
+    infinite between walls [length]; ``shear`` of the fluid between walls that slide.
     """
 
     step: FloatArray
@@ -42,6 +44,7 @@ class Samples:
     upper: FloatArray
     volume: float
     period: FloatArray
+    shear: Shear | None
 
     @property
     def periodic(self) -> BoolArray:
@@ -67,6 +70,16 @@ class Samples:
     def interval(self) -> float:
         """Time between states [time]."""
         return float((self.time[-1] - self.time[0]) / (len(self.time) - 1))
+
+    @property
+    def own_path(self) -> FloatArray:
+        """Positions (s, n, d) without what a shear has moved bodies since the first state, and less their mean
+        [length]."""
+        path = self.position
+        if self.shear is not None:
+            sheared = cumulative_trapezoid(self.shear.velocity(path), self.time, axis=0, initial=0)
+            path = path - sheared
+        return np.asarray(path - path.mean(axis=1, keepdims=True))
 
     @property
     def body_volume(self) -> FloatArray:
@@ -128,6 +141,7 @@ def samples_at(results: Results, rows: IntArray, bodies: IntArray) -> Samples:
         upper=np.asarray(upper),
         volume=float(system.domain.volume),
         period=_periods(system),
+        shear=shear_of_walls(system),
     )
 
 

@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.mechanics.shear import Shear, shear_of_walls
+from rigidfluid.core.mechanics.shear import Shear
 from rigidfluid.core.mechanics.suspension import symmetric
-from rigidfluid.core.model.system import System
 from rigidfluid.post.statistics.blocks import Mean, mean
 from rigidfluid.post.statistics.samples import Samples
 
@@ -52,7 +51,7 @@ class SuspensionStress(NamedTuple):
 
 
 def suspension_stress(
-    samples: Samples, system: System, table: Mapping[str, NDArray[Any]], by_contacts: Mapping[str, FloatArray]
+    samples: Samples, table: Mapping[str, NDArray[Any]], by_contacts: Mapping[str, FloatArray]
 ) -> SuspensionStress | None:
     """Mean stress of the bodies that move; None where the ``table`` of stresslets has none in these states.
 
@@ -72,7 +71,7 @@ def suspension_stress(
         return None
     causes = {"fluid": by_fluid} | {cause: symmetric(stress) for cause, stress in by_contacts.items()}
     causes["total"] = np.sum(list(causes.values()), axis=0)
-    shear = shear_of_walls(system)
+    shear = samples.shear
     figures = {cause: _figures(stress[known], shear) for cause, stress in causes.items()}
     added = figures["total"].viscosity
     relative = None if added is None else added._replace(value=1.0 + added.value)
@@ -81,14 +80,11 @@ def suspension_stress(
 
 def _figures(stress: FloatArray, shear: Shear | None) -> StressFigures:
     """Figures of one cause by its ``stress`` (s, d, d)."""
-    trace = np.trace(stress, axis1=1, axis2=2)
-    pressure = mean(-trace / stress.shape[1])
+    pressure = mean(-np.trace(stress, axis1=1, axis2=2) / stress.shape[1])
     if shear is None:
         return StressFigures(mean(stress), pressure, None, None)
-    along, across = (shear.part(way, way, stress) for way in (shear.along, shear.across))
-    differences = np.stack([along - across, 2.0 * across + along - trace], axis=1)[:, : stress.shape[1] - 1]
-    viscosity = shear.added_viscosity(stress)
-    return StressFigures(mean(stress), pressure, mean(differences), None if viscosity is None else mean(viscosity))
+    differences, viscosity = mean(shear.normal_differences(stress)), shear.added_viscosity(stress)
+    return StressFigures(mean(stress), pressure, differences, None if viscosity is None else mean(viscosity))
 
 
 def _sums(samples: Samples, table: Mapping[str, NDArray[Any]]) -> FloatArray:

@@ -103,7 +103,19 @@ def test_the_viscosity_of_a_sheared_cell_is_what_its_walls_feel() -> None:
     power = (energy["boundary"][-1] - energy["boundary"][0]) / (energy["time"][-1] - energy["time"][0])
     assert found["relative_viscosity"][-1] == pytest.approx(power / (2.0 * volume), rel=1e-8)
     assert found["stress_xy"][-1] == pytest.approx(history.stresslets["sxy"][-1] / volume, rel=1e-12)
-    assert np.isnan(found["relative_viscosity"][0])
+    assert found["first_normal_difference"][-1] == pytest.approx(found["stress_xx"][-1] - found["stress_yy"][-1])
+    assert np.isnan([found["relative_viscosity"][0], found["first_normal_difference"][0]]).all()
+
+
+def test_bodies_that_go_with_a_shear_do_not_fluctuate() -> None:
+    """Two disks at different heights, far from each other and from the walls, fall apart as the shear between them."""
+    wanted = ["output.statistics=true", "body.0.position=[3, 5]"]
+    scene = rigidfluid.load_scene(SCENES / "sheared_cell.toml", wanted).model_dump(mode="json", exclude_none=True)
+    scene["body"].append(scene["body"][0] | {"name": "other", "position": [12.0, 13.0]})
+    found = rigidfluid.run(scene_from_dict(scene))
+    speeds = found.bodies["vx"][-2:]
+    assert np.ptp(speeds) == pytest.approx(8.0, rel=0.05)
+    assert found.statistics["vx_fluctuation"][-1] < 0.2
 
 
 def test_rows_are_resumed_to_the_last_bit(tmp_path: Path) -> None:

@@ -154,7 +154,7 @@ def samples_of_one(centre: np.ndarray, velocity: np.ndarray, turning: np.ndarray
     return Samples(
         *(none, none, centre[None, None], velocity[None, None], turning[None, None]),
         *(np.zeros((1, 1)), np.array([radius]), ("ball",)),
-        *(np.zeros(dimension), np.ones(dimension), 1.0, np.full(dimension, np.inf)),
+        *(np.zeros(dimension), np.ones(dimension), 1.0, np.full(dimension, np.inf), None),
     )
 
 

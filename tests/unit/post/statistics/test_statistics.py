@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import tracemalloc
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
@@ -16,6 +17,7 @@ from scenes import wet_tables
 import rigidfluid
 from rigidfluid.api import Simulation
 from rigidfluid.core.case.scene_model import model_of
+from rigidfluid.core.mechanics.shear import Shear, shear_of_walls
 from rigidfluid.core.mechanics.suspension import mean_gap, velocity_fluctuations
 from rigidfluid.core.model.system import System
 from rigidfluid.core.setup.assemble import assemble
@@ -29,6 +31,7 @@ from rigidfluid.post.statistics.contact_network import contact_network
 from rigidfluid.post.statistics.contact_rows import contact_rows
 from rigidfluid.post.statistics.contact_stresses import contact_stresses
 from rigidfluid.post.statistics.diffusion import diffusion
+from rigidfluid.post.statistics.gap_distribution import gap_distribution
 from rigidfluid.post.statistics.pair_distribution import pair_distribution, shell_shares
 from rigidfluid.post.statistics.profiles import profile
 from rigidfluid.post.statistics.report_section import _stresses, section
@@ -38,7 +41,11 @@ from rigidfluid.post.statistics.suspension_stress import StressFigures, Suspensi
 
 
 def made(
-    position: np.ndarray, velocity: np.ndarray | None = None, radius: float = 0.01, period: float = np.inf
+    position: np.ndarray,
+    velocity: np.ndarray | None = None,
+    radius: float = 0.01,
+    period: float = np.inf,
+    shear: Shear | None = None,
 ) -> Samples:
     """Balls in a unit box at places (s, n, d), a time of .1 from state to state."""
     states, count, dimension = position.shape
@@ -55,6 +62,7 @@ def made(
         upper=np.ones(dimension),
         volume=1.0,
         period=np.array([period, *[np.inf] * (dimension - 1)]),
+        shear=shear,
     )
 
 
@@ -176,8 +184,58 @@ def test_a_random_walk_diffuses_and_common_motion_does_not() -> None:
     drift = np.linspace(0.0, 5.0, 400)[:, None, None]
     found = diffusion(made(np.cumsum(steps, axis=0) + drift))
     np.testing.assert_allclose(found.coefficient, [0.02**2 / 0.2, 0.01**2 / 0.2], rtol=0.2)
-    spread = velocity_fluctuations(steps + 3.0).mean(axis=0)
+    spread = velocity_fluctuations(steps + 3.0, steps, None).mean(axis=0)
     np.testing.assert_allclose(spread, [0.02, 0.01], rtol=0.02)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_shear_neither_diffuses_nor_fluctuates(dimension: int) -> None:
+    """Walkers that a shear moves along x by their place across, the last axis: what is left is their own walk."""
+    random, last = np.random.default_rng(7), dimension - 1
+    shear, own = shear_of_walls(sheared(dimension)), np.full(dimension, 0.02)
+    assert shear is not None
+    steps = random.normal(scale=own, size=(400, 300, dimension))
+    walk = random.random((300, dimension)) + np.cumsum(steps, axis=0)
+    place, velocity = walk.copy(), np.zeros_like(walk)
+    velocity[..., 0] = 1.5 + 2.0 * walk[..., last]
+    place[1:, :, 0] += np.cumsum(0.05 * (velocity[1:, :, 0] + velocity[:-1, :, 0]), axis=0)
+    found, flow = made(place, velocity + steps, shear=shear), made(place, velocity + steps)
+    np.testing.assert_allclose(diffusion(found).coefficient, own**2 / 0.2, rtol=0.2)
+    assert diffusion(flow).coefficient[0] > 1.0
+    spread = velocity_fluctuations(found.velocity, found.position, shear).mean(axis=0)
+    np.testing.assert_allclose(spread, own, rtol=0.02)
+    layered = profile(found, last, None).fluctuations
+    middle = slice(5, 15)
+    within = 2.0 / 20.0 / np.sqrt(12.0)
+    np.testing.assert_allclose(layered.value[middle, 0], np.hypot(own[0], within), rtol=0.1)
+    np.testing.assert_allclose(layered.value[middle, last], own[last], rtol=0.05)
+
+
+def test_gaps_are_told_by_the_share_of_bodies_below() -> None:
+    """Of twenty bodies with the gaps 1 to 20 in any order, the last of which has nothing near in one of the states."""
+    random = np.random.default_rng(7)
+    samples = made(np.full((16, 20, 2), 0.5))
+    gaps = np.stack([random.permutation(np.arange(1.0, 21.0)) for _ in range(16)])
+    found = gap_distribution(replace(samples, gap=gaps))
+    np.testing.assert_allclose(found.gap.value, 20.0 * found.share)
+    gaps[1][gaps[1] >= 19.0] = np.inf
+    found = gap_distribution(replace(samples, gap=gaps))
+    np.testing.assert_allclose(found.gap.value[:-1], 20.0 * found.share[:-1])
+    assert found.gap.to_list()[0][-1] is None
+
+
+def test_velocities_in_a_layer_spread_by_the_parts_of_bodies_in_it() -> None:
+    """Of two disks in the middle of layers and one that lies in both, three to one."""
+    place = np.array([[0.2, 0.225], [0.5, 0.275], [0.8, 0.25 + 0.02]])
+    velocity = np.array([[1.0, 0.0], [2.0, 0.0], [5.0, 4.0]])
+    states = [np.repeat(values[None], 16, axis=0) for values in (place, velocity)]
+    found = profile(made(*states, radius=0.025), 1, None).fluctuations
+    height = -0.02 / 0.025
+    below = (0.5 * np.pi + np.arcsin(height) + height * np.sqrt(1.0 - height**2)) / np.pi
+    for layer, share, speed in ((4, below, 1.0), (5, 1.0 - below, 2.0)):
+        spread = np.sqrt(share) / (1.0 + share)
+        np.testing.assert_allclose(found.value[layer], [spread * (5.0 - speed), spread * 4.0], rtol=1e-9)
+    assert np.isnan(found.value[0]).all()
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -326,7 +384,7 @@ def sheared(dimension: int, **more: Any) -> System:
 def test_stresses_differ_along_the_flow_across_it_and_along_the_vorticity(dimension: int) -> None:
     """With the walls across z the directions of flow, gradient and vorticity are x, z and y."""
     random = np.random.default_rng(5)
-    samples = made(random.random((32, 2, dimension)))
+    samples = made(random.random((32, 2, dimension)), shear=shear_of_walls(sheared(dimension)))
     single = random.normal(size=(64, dimension, dimension))
     single = single + single.swapaxes(1, 2)
     rows, columns = np.triu_indices(dimension)
@@ -335,7 +393,7 @@ def test_stresses_differ_along_the_flow_across_it_and_along_the_vorticity(dimens
     }
     by_fluid = single.reshape(32, 2, dimension, dimension).sum(axis=1)
     by_contacts = random.normal(size=(32, dimension, dimension))
-    found = suspension_stress(samples, sheared(dimension), table, {"contacts": by_contacts})
+    found = suspension_stress(samples, table, {"contacts": by_contacts})
     assert found is not None
     assert found.relative_viscosity is not None
     assert found.shear_rate == pytest.approx(2.0)
@@ -356,10 +414,10 @@ def test_stresses_differ_along_the_flow_across_it_and_along_the_vorticity(dimens
 def test_a_fluid_whose_viscosity_varies_has_no_relative_viscosity() -> None:
     """Its own stress changes with the bodies, so that theirs is not all that they add."""
     material = {"type": "power_law", "viscosity": 3.0, "shear_rate": 1.0, "exponent": 0.5, "least_shear_rate": 0.1}
-    system = sheared(2, fluid={"model": "stokes", "density": 1.0, "material": material})
-    samples = made(np.random.default_rng(5).random((4, 2, 2)))
+    shear = shear_of_walls(sheared(2, fluid={"model": "stokes", "density": 1.0, "material": material}))
+    samples = made(np.random.default_rng(5).random((4, 2, 2)), shear=shear)
     names = {"step": np.repeat(samples.step, 2), "body": np.array(["ball0", "ball1"] * 4)}
-    found = suspension_stress(samples, system, names | {name: np.ones(8) for name in ("sxx", "sxy", "syy")}, {})
+    found = suspension_stress(samples, names | {name: np.ones(8) for name in ("sxx", "sxy", "syy")}, {})
     assert found is not None
     assert found.shear_rate == pytest.approx(2.0)
     assert found.relative_viscosity is None
