@@ -22,6 +22,7 @@ from rigidfluid.post.statistics.blocks import mean
 from rigidfluid.post.statistics.contact_network import contact_network
 from rigidfluid.post.statistics.contact_rows import contact_rows
 from rigidfluid.post.statistics.contact_stresses import contact_stresses
+from rigidfluid.post.statistics.curves import curves, table_text
 from rigidfluid.post.statistics.diffusion import diffusion
 from rigidfluid.post.statistics.figures import Statistics
 from rigidfluid.post.statistics.fluid_layers import OUTPUTS, fluid_layers
@@ -40,7 +41,8 @@ if TYPE_CHECKING:
 def statistics(
     folder: Path, since: float | None = None, until: float | None = None, across: str = "y"
 ) -> tuple[Statistics, list[Path]]:
-    """Measure the statistics of a run, and write ``statistics.json`` and ``statistics.png`` beside its results.
+    """Measure the statistics of a run, and write ``statistics.json``, ``statistics.png`` and tables of the
+    curves, ``statistics_….csv``, beside its results.
 
     They are means from the time ``since``, a third of the run if not given, to ``until``, its end; the profile is
     ``across`` an axis. Raises OutputError for a folder that cannot be read, and for too few bodies or states.
@@ -48,11 +50,13 @@ def statistics(
     results = read_results(folder, motion_only=True)
     found = measured(results, tables_of(load_results(folder)), since, until, across)
     figures = Path(folder) / "statistics.json"
+    texts = {figures: json.dumps(found.to_dict(), indent=2, allow_nan=False, ensure_ascii=False) + "\n"}
+    texts |= {figures.with_name(f"statistics_{name}.csv"): table_text(table) for name, table in curves(found).items()}
     with matplotlib.rc_context(STYLE), writing(figures):
-        text = json.dumps(found.to_dict(), indent=2, allow_nan=False, ensure_ascii=False)
-        replace_text(figures, text + "\n")
+        for path, text in texts.items():
+            replace_text(path, text)
         plots = save(found.units.put_into_labels(statistics_plot(found)), Path(folder), "statistics", ["png"])
-    return found, [figures, *plots]
+    return found, [*texts, *plots]
 
 
 def measure_statistics(

@@ -274,8 +274,20 @@ def test_of_a_run_they_are_written_beside_its_results(tmp_path: Path) -> None:
     scene = dry_scene(law, *balls, end=0.6, step=5e-3)
     rigidfluid.run(scene, tmp_path)
     found, files = statistics(tmp_path, since=0.1)
-    assert [file.name for file in files] == ["statistics.json", "statistics.png"]
+    curves = ["pair_distribution", "structure_factor", "gap_distribution", "diffusion", "profile"]
+    tables = [f"statistics_{name}.csv" for name in curves]
+    assert [file.name for file in files] == ["statistics.json", *tables, "statistics.png"]
     data = json.loads(files[0].read_text())
+    written = {file.name: np.genfromtxt(file, delimiter=",", names=True) for file in files[1:-1]}
+    for table, column, wanted in (
+        (tables[0], "g", data["pair_distribution"]["g"][0]),
+        (tables[1], "s_error", data["structure_factor"]["s"][1]),
+        (tables[2], "gap", data["gap_distribution"]["gap"][0]),
+        (tables[3], "square_displacement_y", np.array(data["diffusion"]["mean_square_displacement"])[:, 1]),
+        (tables[4], "fluctuation_vx", np.array(data["profile"]["velocity_fluctuations"][0])[:, 0]),
+        (tables[4], "place", data["profile"]["place"]),
+    ):
+        np.testing.assert_array_equal(written[table][column], np.array(wanted, dtype=float))
     assert data["bodies"] == 6
     assert data["volume_fraction"] == pytest.approx(6 * np.pi * 0.01)
     assert data["from"] == pytest.approx(0.1)
