@@ -1,4 +1,5 @@
-"""Viscosity of dilute suspensions in sheared cells, by the power of walls and by stresslets, beside Einstein's."""
+"""Viscosity of dilute suspensions in sheared cells, by the power of walls and by stresslets, beside Einstein's and the
+next order, which images give."""
 
 from __future__ import annotations
 
@@ -8,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 from page_tools import Page, Run, Work, table
+
+from pages._images_of_stresslets import image_strain
 
 DILUTE = {2: 2.0, 3: 2.5}
 """Share's coefficient by dimension, (d + 2)/2."""
@@ -36,6 +39,12 @@ class Cell:
     def share(self) -> float:
         """Share φ of the body."""
         return (np.pi if self.dimension == 2 else 4.0 / 3.0 * np.pi) / self.volume
+
+    @property
+    def coefficient(self) -> float:
+        """Viscosity less 1 over the share, to the next order: of a body in the shear and in the flow of its images."""
+        added = (self.dimension + 2) * image_strain(self.dimension, self.period, self.distance) * self.share
+        return DILUTE[self.dimension] * (1.0 + added)
 
     @property
     def overrides(self) -> list[str]:
@@ -70,20 +79,19 @@ def page(work: Work) -> Page:
     shaped = [Cell(2, *shape) for shape in SHAPES]
     found = {cell: _found(work, cell) for cell in [*cells, *shaped]}
     apart = max(abs(each.walls / each.stresslet - 1.0) for each in found.values())
-    slopes = {
-        dimension: _slope([(cell, found[cell]) for cell in cells if cell.dimension == dimension]) for dimension in SIDES
-    }
+    lines = {dimension: _line(found, [cell for cell in cells if cell.dimension == dimension]) for dimension in SIDES}
     text = ABOUT.format(
         disks=_rows(found, [cell for cell in cells if cell.dimension == 2]),
         spheres=_rows(found, [cell for cell in cells if cell.dimension == 3]),
         shapes=table(
-            ("period", "walls apart", "(μ/μ₀ - 1)/φ"),
-            [(f"{cell.period:.4g}", f"{cell.distance:.4g}", f"{found[cell].stresslet:.4f}") for cell in shaped],
+            ("period", "walls apart", "(μ/μ₀ - 1)/φ", "to the next order", "off that"),
+            [(f"{cell.period:.4g}", f"{cell.distance:.4g}", *_beside_next_order(found, cell)) for cell in shaped],
         ),
         apart=f"{apart:.0e}",
         share=f"{shaped[0].share:.4f}",
-        disk="{:.3f} + {:.2f} φ".format(*slopes[2]),
-        sphere="{:.3f} + {:.2f} φ".format(*slopes[3]),
+        **{name: lines[dimension] for dimension, name in ((2, "disk"), (3, "sphere"))},
+        predicted_disk=_predicted(2),
+        predicted_sphere=_predicted(3),
     )
     return Page("Viscosity of dilute suspensions", text, {"": coefficients(found, cells)})
 
@@ -98,7 +106,8 @@ def coefficients(found: Mapping[Cell, Found], cells: list[Cell]) -> Figure:
         colour = f"C{dimension - 2}"
         axes.plot(shares, [found[cell].stresslet for cell in own], "o-", color=colour, label=f"{name}, by stresslet")
         axes.plot(shares, [found[cell].walls for cell in own], "x", color="black", label=f"{name}, by walls")
-        axes.axhline(DILUTE[dimension], color=colour, linestyle="--", linewidth=0.8)
+        next_order = [cell.coefficient for cell in own]
+        axes.plot([0.0, *shares], [DILUTE[dimension], *next_order], "--", color=colour, label=f"{name}, by images")
     axes.set(xlabel="share φ", ylabel="(μ/μ₀ - 1)/φ")
     axes.legend(fontsize=8)
     return figure
@@ -113,21 +122,34 @@ def _found(work: Work, cell: Cell) -> Found:
     return Found(float(by_walls / cell.share), float(by_stresslet / cell.share), run)
 
 
-def _slope(found: list[tuple[Cell, Found]]) -> tuple[float, float]:
-    """Intercept and slope over the share, of the three largest cells."""
-    shares, values = np.array([(cell.share, each.stresslet) for cell, each in found[:3]]).T
+def _line(found: Mapping[Cell, Found], cells: list[Cell]) -> str:
+    """Line over the share through the three largest cells."""
+    shares, values = np.array([(cell.share, found[cell].stresslet) for cell in cells[:3]]).T
     slope, intercept = np.polyfit(shares, values, 1)
-    return float(intercept), float(slope)
+    return f"{intercept:.3f} + {slope:.2f} φ"
+
+
+def _predicted(dimension: int) -> str:
+    """Line over the share of squares or cubes, by their images."""
+    slope = DILUTE[dimension] * (dimension + 2) * image_strain(dimension, 1.0, 1.0)
+    return f"{DILUTE[dimension]:g} + {slope:.2f} φ"
+
+
+def _beside_next_order(found: Mapping[Cell, Found], cell: Cell) -> tuple[str, str, str]:
+    """Coefficient by the stresslet, that to the next order, and how far the first is off it."""
+    each, known = found[cell].stresslet, cell.coefficient
+    return f"{each:.4f}", f"{known:.4f}", f"{each / known - 1.0:+.2%}"
 
 
 def _rows(found: Mapping[Cell, Found], cells: list[Cell]) -> str:
     rows = []
     for cell in cells:
         each, dilute = found[cell], DILUTE[cell.dimension]
-        row = (f"{cell.distance:g}", f"{cell.share:.4f}", f"{each.walls:.4f}", f"{each.stresslet:.4f}")
         off = f"{each.stresslet / dilute - 1.0:+.2%}"
-        rows.append((*row, off, f"{each.run.summary['unknowns']}", f"{each.run.cpu_seconds:.0f} s"))
-    head = ("side of the cell", "φ", "by walls", "by stresslet", "off the dilute one", "unknowns", "CPU time")
+        row = (f"{cell.distance:g}", f"{cell.share:.4f}", f"{each.walls:.4f}", *_beside_next_order(found, cell), off)
+        rows.append((*row, f"{each.run.summary['unknowns']}", f"{each.run.cpu_seconds:.0f} s"))
+    compared = ("by stresslet", "to the next order", "off that", "off the dilute one")
+    head = ("side of the cell", "φ", "by walls", *compared, "unknowns", "CPU time")
     return table(head, rows)
 
 
@@ -146,9 +168,15 @@ the share φ is (d + 2)/2 in a dilute suspension: 2.5 for spheres (Einstein, Ann
 
 {spheres}
 
-Lines through the three most dilute ones are {disk} for disks and {sphere} for spheres. Their intercepts are what a
-dilute suspension has. Their slopes are those of these cells, of one layer of bodies between walls, and no property
-of a suspension at large: with the share the walls come nearer too, and the neighbours along the walls. How much
-that matters cells with a disk show that have the same share {share}, with other periods and distances of the walls:
+**The next order.** The flow of a body's stresslet is taken away by the walls, and its images at each period have
+their own. Both strain the fluid at the body, by e = c S/(μV), so that its stresslet grows by (d + 2) c φ: to the
+next order the coefficient is (d + 2)/2 (1 + (d + 2) c φ). c follows from the shape of the cell alone, without finite
+elements: lattice sums for images, and for each wave along the walls the flow in a strip that cancels that of the
+stresslets. For squares that is {predicted_disk}, for cubes {predicted_sphere}. Lines through the three most dilute
+cells are {disk} and {sphere}; what is left are higher orders, φ² more for disks and φ^(5/3) for spheres, and the mesh.
+
+These are slopes of cells, of one layer of bodies between walls. Batchelor and Green (J. Fluid Mech. 56 (1972) 401)
+have 5.2 φ² for spheres at random places far from walls, which no cell of one body has: walls and images matter as
+much. Cells with a disk that have the same share {share}, with other periods and distances of the walls, show it:
 
 {shapes}"""
