@@ -76,6 +76,7 @@ def fallen(scene: Scene) -> tuple[FloatArray, FloatArray, Simulation]:
     return np.array(times), np.array(lean), simulation
 
 
+@pytest.mark.long
 def test_dominoes_fall_as_fast_as_the_root_of_gravity() -> None:
     """v = √(g h) f(distance/h) by their similarity (McLachlan et al., SIAM Rev. 25 (1983) 403)."""
     slow, fast = (fallen(domino_row(2, 0.6, gravity))[0][-1] for gravity in (GRAVITY, 4.0 * GRAVITY))

@@ -27,6 +27,7 @@ def disk_on_slope(law, steepness, end):
     return dry_scene(contact, disk, end=end, step=2e-3, gravity=gravity.tolist(), upper=[3.0, 1.0])
 
 
+@pytest.mark.long
 def test_a_disk_rests_on_a_slope_below_the_angle_and_slides_above():
     resting, sliding, later = (
         run_to_end(disk_on_slope("normal", steepness, end)) for steepness, end in ((0.8, 0.6), (1.05, 0.2), (1.05, 0.3))

@@ -49,7 +49,14 @@ SHAPES: dict[str, tuple[Table, Table]] = {
         {"type": "polygon", "points": [[-0.08, -0.08], [0.08, -0.08], [0.08, 0.08], [-0.08, 0.08]], "angle": 0.3},
     ),
 }
-CASES = [("balls", 2), ("balls", 3), ("ellipses", 2), ("ellipsoids", 3), ("polygons", 2), ("polyhedra", 3)]
+CASES = [
+    ("balls", 2),
+    ("balls", 3),
+    ("ellipses", 2),
+    ("ellipsoids", 3),
+    ("polygons", 2),
+    pytest.param("polyhedra", 3, marks=pytest.mark.long),
+]
 
 
 def periodic(*axes: int) -> list[dict[str, str]]:

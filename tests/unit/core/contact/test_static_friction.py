@@ -33,6 +33,7 @@ def test_without_the_spring_it_creeps():
     assert state.springs is None
 
 
+@pytest.mark.long
 def test_a_block_slides_on_a_steeper_slope():
     middle, end = (run_to_end(block_on_slope(1.01, end=time)) for time in (0.5, 1.0))
     angle = np.arctan(1.01 * FRICTION)
@@ -108,6 +109,7 @@ def test_a_run_that_is_resumed_while_it_sticks_goes_on_with_the_same_bits(tmp_pa
     assert whole.ledger == resumed.ledger
 
 
+@pytest.mark.long
 def test_a_shorter_plan_resolves_stiff_springs():
     """Substeps that did not know of these springs would explode."""
     state = run_to_end(block_on_slope(0.5, end=0.1, step=0.02, tangential_stiffness=4e4))

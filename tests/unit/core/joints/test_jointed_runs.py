@@ -184,6 +184,7 @@ def test_a_body_of_given_motion_works_on_what_is_hinged_to_it():
     assert all(finer < 0.3 * coarser for coarser, finer in pairwise(errors))
 
 
+@pytest.mark.long
 def test_a_bar_hinged_to_a_mechanism_that_changes_its_shape(install):
     """The work of the stroke against hinge, springs and gravity is in the ledger, to second order."""
     install(Path(mechanism_parts.__file__).read_text(encoding="utf-8"), name="strokes", module="installed_strokes")

@@ -168,6 +168,7 @@ def test_a_damped_slider_is_exact_at_any_strength(damping):
     assert it.state.ledger.contact_loss > 0.0
 
 
+@pytest.mark.long
 @DIMENSIONS
 def test_a_driven_slider_goes_where_its_stroke_says_and_works_as_the_ledger_says(dimension):
     errors, rest = [], [2.0] * (dimension - 2)

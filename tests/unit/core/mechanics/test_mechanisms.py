@@ -154,6 +154,7 @@ def test_one_ball_that_bounces_turns_the_whole(stepping, error, ratio):
     assert apart(it) == pytest.approx(0.3, rel=1e-15)
 
 
+@pytest.mark.long
 def test_a_bounce_in_three_dimensions_keeps_energy_and_turns_as_in_two():
     flat = pair(position=[0.5, 0.3], velocity=[0.0, -3.0], angle=0.3)
     turn = [np.cos(0.15), 0.0, 0.0, np.sin(0.15)]
@@ -173,6 +174,7 @@ def run_bounce(table):
     return run(scene(table, contact=LAW | {"epsilon": 1e-9}, step=2e-4), 0.095).bodies["it"].angular_velocity[0]
 
 
+@pytest.mark.long
 def test_two_of_them_collide_and_keep_momentum_and_energy():
     left = pair("hammer", name="a", position=[0.3, 0.5], angle=1.4, velocity=[2.0, 0.0])
     right = pair("dumbbell", name="b", position=[0.7, 0.6], angle=1.7, velocity=[-1.0, 0.0], density=2.0)

@@ -82,6 +82,7 @@ def assert_as_made(scene: Scene) -> None:
     assert expected(scene).facets == pytest.approx(len(made.facets), rel=0.3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", SHIPPED)
 def test_scenes_have_the_cells_expected(name: str) -> None:
     assert_as_made(load_scene(SCENES / f"{name}.toml"))

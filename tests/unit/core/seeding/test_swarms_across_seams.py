@@ -113,6 +113,7 @@ def test_a_later_swarm_that_is_too_long_to_cross_keeps_all_off_periodic_surfaces
     Simulation(model_of(scene))
 
 
+@pytest.mark.long
 def test_the_naive_detector_finds_no_smaller_gap_among_all_images() -> None:
     ellipse = {"type": "ellipsoid", "semi_axes": [0.16, 0.08]}
     scene = seeded(2, ellipse, fraction=0.6, gap=0.002, tables=periodic(0, 1))

@@ -163,6 +163,7 @@ def test_a_movie_follows_a_body_that_enters(falling: Results) -> None:
     np.testing.assert_array_equal(shot.shift, seen)
 
 
+@pytest.mark.long
 def test_the_report_of_a_run_in_space(dry: Path) -> None:
     names = {path.name for path in report(dry)}
     assert {"space.png", "position.png", "rotation.png", "torque.png", "contacts.png", "report.html"} <= names

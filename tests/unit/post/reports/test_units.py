@@ -64,6 +64,7 @@ def named(units: object) -> rigidfluid.Scene:
     return rigidfluid.scene_from_dict(tables)
 
 
+@pytest.mark.long
 def test_results_are_the_same_and_labels_are_not(tmp_path: Path) -> None:
     for name, units in (("plain", None), ("named", CGS)):
         rigidfluid.run(named(units), tmp_path / name)

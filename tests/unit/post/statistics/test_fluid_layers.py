@@ -130,7 +130,10 @@ def test_fluid_and_bodies_together_carry_the_flux(tmp_path: Path, axis: int) -> 
         np.testing.assert_allclose(found.value[:, 0], flux, rtol=LAYER)
 
 
-@pytest.mark.parametrize(("dimension", "axis"), [(2, 0), (2, 1), (3, 0), (3, 1), (3, 2)])
+@pytest.mark.parametrize(
+    ("dimension", "axis"),
+    [(2, 0), (2, 1), (3, 1), *(pytest.param(3, axis, marks=pytest.mark.long) for axis in (0, 2))],
+)
 def test_layers_of_a_body_that_turns_move_as_its_points_there(dimension: int, axis: int) -> None:
     """A naive twin: points of a grid in a ball that is as thick as five layers."""
     random = np.random.default_rng(4)
