@@ -147,6 +147,7 @@ class Loads:
     where its twist is given. ``film``: that which brakes them before, None without a fluid. In a fluid ``travel_speed``
     (n,) is the highest expected between body and fluid, and ``flow_speed`` that of the fluid as it is given on the
     boundary and at the start [length/time]. ``attraction``: all laws that attract, whose work contacts must hold too.
+    ``names`` of the bodies are for messages.
     """
 
     mass: FloatArray
@@ -159,6 +160,7 @@ class Loads:
     travel_speed: FloatArray | None = None
     flow_speed: float = 0.0
     attraction: ForceLaw | None = None
+    names: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -53,4 +53,5 @@ def _impact_loads(model: Model, impetus: Impetus) -> Loads:
     together = stack_loads(own, impetus.weight, position, radius, model.domain.size)
     stacked_weight, stacked_energy = np.where(prescribed, np.inf, together.T)
     mass = np.where(prescribed, np.inf, impetus.mass)
-    return Loads(mass, weight, speed, stacked_weight, stacked_energy, smallest, model.fluid.film(model.shapes))
+    film, names = model.fluid.film(model.shapes), tuple(body.name for body in model.all_bodies)
+    return Loads(mass, weight, speed, stacked_weight, stacked_energy, smallest, film, names=names)

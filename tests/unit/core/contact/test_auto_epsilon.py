@@ -131,7 +131,7 @@ def test_two_driven_bodies_hold_nothing() -> None:
     ("held", "text"),
     [
         (None, 'contact.epsilon: found "auto" without known loads; .* Give `epsilon` as a number'),
-        (unstacked(MASSES, np.array([1.0, 0.0]), np.zeros(2), SMALLEST), "body.1 that has neither weight nor speed"),
+        (unstacked(MASSES, np.array([1.0, 0.0]), np.zeros(2), SMALLEST), "body 1 that has neither weight nor speed"),
         (loads(1.0, 1.0, 0.0), "contact.smallest_gap: found 0.0; .*below contact.range = 0.02"),
         (loads(1.0, 1.0, RANGE), "contact.smallest_gap: found 0.02"),
     ],

@@ -158,7 +158,7 @@ def test_the_inflow_carries_bodies() -> None:
         ),
         ({"smallest_gap": 0.0}, "contact.smallest_gap: found 0"),
         ({"impact_speed": -1.0}, "contact.impact_speed: found -1"),
-        ({"epsilon": "auto"}, "body.0 that has neither weight nor speed.*contact.impact_speed"),
+        ({"epsilon": "auto"}, "body 'body0' that has neither weight nor speed.*contact.impact_speed"),
     ],
 )
 def test_wrong_input(contact: dict[str, Any], text: str) -> None:

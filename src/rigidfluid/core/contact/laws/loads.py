@@ -21,7 +21,9 @@ def require_loads(loads: Loads | None, law_range: float) -> Loads:
         raise SceneError("contact.smallest_gap", loads.smallest_gap, allowed, "Shorten it, or widen the range.")
     idle = np.isfinite(loads.mass) & (loads.weight == 0.0) & (loads.speed == 0.0)
     if idle.any():
-        found = f'"auto" with body.{int(np.argmax(idle))} that has neither weight nor speed'
+        number = int(np.argmax(idle))
+        body = repr(loads.names[number]) if loads.names else number
+        found = f'"auto" with body {body} that has neither weight nor speed'
         allowed = "a load that the contacts must hold"
         remedy = "Say how fast it may hit: `contact.impact_speed`, or give `epsilon` as a number."
         raise SceneError(_FIELD, found, allowed, remedy)
