@@ -25,6 +25,7 @@ TABLES = {
     "stresslets": "a row per body with `output.stresslets`",
     "walls": "forces on the surfaces of the domain, with `output.walls`",
     "statistics": "velocities, gaps, contacts and stress of many bodies, with `output.statistics`",
+    "exchanges": "mass, momentum and energy of each body that entered or left",
     "mesh_error": "the error that the mesh makes, with `mesh.estimate`",
     "sensitivities": "derivatives by the keys in `output.sensitivities`, a row per key and body",
     "scalar": "content, balance and extremes of the scalar of a table `[scalar]`",
@@ -63,7 +64,8 @@ _ADDED = (
 
 def _written(table: str) -> str:
     """When rows of a table are written."""
-    return "each `output.every`" if table == "error_estimates" else "each step"
+    seldom = {"error_estimates": "each `output.every`", "exchanges": "when bodies enter or leave"}
+    return seldom.get(table, "each step")
 
 
 FILES = (

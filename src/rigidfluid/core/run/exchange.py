@@ -42,6 +42,16 @@ class Exchange:
         names, now = _names(before), set(_names(after))
         return cls(before, after, np.array([row for row, name in enumerate(names) if name in now], dtype=np.int64))
 
+    @property
+    def gone(self) -> IntArray:
+        """Rows before of the bodies that leave."""
+        return np.setdiff1d(np.arange(len(self.before.bodies)), self.kept)
+
+    @property
+    def come(self) -> IntArray:
+        """Rows after of the bodies that enter."""
+        return np.arange(len(self.kept), len(self.after.bodies))
+
     def rows(self, old: FloatArray, new: FloatArray) -> FloatArray:
         """``old`` (n, …) of those that stay, and ``new`` (n', …) of those that enter."""
         return np.concatenate([old[self.kept], new[len(self.kept) :]])
@@ -76,7 +86,7 @@ class Exchange:
 
     def filling(self, pose: Pose, twist: Twist) -> Filling:
         """Rigid velocities where bodies have left, which were at ``pose`` with ``twist``, or an image of them."""
-        gone, lattice = np.setdiff1d(np.arange(len(self.before.bodies)), self.kept), self.before.lattice
+        gone, lattice = self.gone, self.before.lattice
 
         def velocities(points: FloatArray) -> tuple[BoolArray, FloatArray]:
             left, velocity = np.zeros(len(points), dtype=bool), np.zeros_like(points)
@@ -101,16 +111,18 @@ class Successor:
     prescription: Prescription
 
 
-def successor(origin: Model, model: Model, system: System, state: State, population: Population) -> Successor:
-    """The bodies of a ``population`` of the model ``origin`` after those of a ``model`` and ``system`` in a ``state``;
-    raises SceneError where they cannot be, or overlap."""
+def successor(
+    origin: Model, model: Model, system: System, state: State, population: Population, time: float
+) -> Successor:
+    """The bodies of a ``population`` of the model ``origin`` after those of a ``model`` and ``system`` in a ``state`` at
+    a ``time``; raises SceneError where they cannot be, or overlap."""
     require_changeable(model)
     population = population.placed(Present(_names(system), state.pose, state.twist))
     now = population.model(origin)
     require_changeable(now)
     after = assemble_present(now)
     exchange = Exchange.between(system, after)
-    given = prescribed_motion(now.bodies, after.pose).rows
+    given = prescribed_motion(now.bodies, after.pose, time).rows
     prescription = exchange.prescription(present_motion(model, system, state).rows, given)
     after = following(after, PrescribedMotion(prescription))
     return Successor(population, now, replace(exchange, after=after), prescription)

@@ -44,6 +44,7 @@ from rigidfluid.core.run.caller_input import (
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.control import body_row, following, present_motion, with_applied
 from rigidfluid.core.run.exchange import exchanged, successor
+from rigidfluid.core.run.exchange_rows import exchange_rows
 from rigidfluid.core.run.fluid_now import fluid_now
 from rigidfluid.core.run.initial_state import initial_state
 from rigidfluid.core.run.mesh_keys import updater_of
@@ -409,17 +410,19 @@ class Simulation(Described):
     def _exchange(self, population: Population) -> None:
         """Go on with other bodies; nothing is changed where they do not fit."""
         require_one_process(self.system.backend)
-        before = self.model, self.system, self.population
+        self.recorder.refuse_closed("an exchange of bodies")
+        before, state = (self.model, self.system, self.population), self.state
         with told_memory(), self._threads(), self.watch("mesh"), subjects_by_name(population.names(self.origin)):
-            next_one = successor(self.origin, self.model, self.system, self.state, population)
+            next_one = successor(self.origin, self.model, self.system, state, population, self.time)
             self._follow(next_one.model, next_one.exchange.after, next_one.population)
             try:
-                self.state = exchanged(next_one, self.state, self.mesh_updater, self.clock)
+                self.state = exchanged(next_one, state, self.mesh_updater, self.clock)
             except BaseException:
                 self._follow(*before)
                 raise
         kept = next_one.exchange.kept
         self.recorder.extremes = self.recorder.extremes.among(kept, len(self.system.bodies))
+        self.recorder.record_exchange(exchange_rows(next_one.exchange, state, self.state, self.time), self)
 
     def _follow(self, model: Model, system: System, population: Population) -> None:
         """Go on with a system, of the model's bodies."""
