@@ -25,11 +25,11 @@ TABLES = {
     "stresslets": "a row per body with `output.stresslets`",
     "walls": "forces on the surfaces of the domain, with `output.walls`",
     "statistics": "velocities, gaps, contacts and stress of many bodies, with `output.statistics`",
-    "exchanges": "mass, momentum and energy of each body that entered or left",
     "mesh_error": "the error that the mesh makes, with `mesh.estimate`",
     "sensitivities": "derivatives by the keys in `output.sensitivities`, a row per key and body",
     "scalar": "content, balance and extremes of the scalar of a table `[scalar]`",
     "scalar_fluxes": "its flux into the fluid and mean value on each body and each surface of the domain",
+    "exchanges": "mass, momentum and energy of each body that entered or left",
     "error_estimates": "a row per body with `output.error_bars`",
 }
 """Names of a run's tables, and what is in each."""
