@@ -36,32 +36,34 @@ class Present:
 @dataclass(frozen=True)
 class Population:
     """Changes of the bodies of a run: tables of those that ``entered``, and names of those that ``left``; ``places``:
-    keys of place and velocity of those that were there at the latest change, by name."""
+    keys of place and velocity of those that were there at the latest change, by name; ``since``: when each one of those
+    that entered did [time]."""
 
     entered: tuple[Mapping[str, Any], ...] = ()
     left: tuple[str, ...] = ()
     places: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    since: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
     def from_dict(cls, stored: Mapping[str, Any]) -> Population:
         """Population as `to_dict` gave it, or its `changes` alone."""
-        return cls(tuple(stored["entered"]), tuple(stored["gone"]), stored.get("places", {}))
+        return cls(tuple(stored["entered"]), tuple(stored["gone"]), stored.get("places", {}), stored.get("since", {}))
 
     def __bool__(self) -> bool:
         return bool(self.entered or self.left)
 
     def to_dict(self) -> dict[str, Any]:
         """Values that JSON can hold, for checkpoints."""
-        return self.changes | {"places": dict(self.places)}
+        return self.changes | {"places": dict(self.places), "since": dict(self.since)}
 
     @property
     def changes(self) -> dict[str, Any]:
         """Which have entered, and which are gone, as values that JSON can hold."""
         return {"entered": list(self.entered), "gone": list(self.left)}
 
-    def with_body(self, table: Mapping[str, Any]) -> Population:
-        """One with a body more, last of all."""
-        return replace(self, entered=(*self.entered, table))
+    def with_body(self, table: Mapping[str, Any], time: float) -> Population:
+        """One with a body more, last of all, which entered at a ``time``."""
+        return replace(self, entered=(*self.entered, table), since={**self.since, str(table["name"]): time})
 
     def without(self, name: str) -> Population:
         """One in which the body of this name has left."""

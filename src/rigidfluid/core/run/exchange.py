@@ -114,8 +114,8 @@ class Successor:
 def successor(
     origin: Model, model: Model, system: System, state: State, population: Population, time: float
 ) -> Successor:
-    """The bodies of a ``population`` of the model ``origin`` after those of a ``model`` and ``system`` in a ``state`` at
-    a ``time``; raises SceneError where they cannot be, or overlap."""
+    """The bodies of a ``population`` of the model ``origin`` after those of a ``model`` and ``system`` in a ``state``,
+    at a ``time``; raises SceneError where they cannot be, or overlap."""
     require_changeable(model)
     population = population.placed(Present(_names(system), state.pose, state.twist))
     now = population.model(origin)

@@ -326,7 +326,7 @@ class Simulation(Described):
         """
         table = named_table(body)
         refuse_known_name(self.population, self.model, table["name"])
-        self._exchange(self.population.with_body(table))
+        self._exchange(self.population.with_body(table, self.time))
 
     def remove(self, name: str) -> None:
         """Let a body leave, from now on: in a fluid, which takes its place with its velocity.
@@ -397,7 +397,8 @@ class Simulation(Described):
         if not (self.model.source_tables or self.model.sink_tables):
             return
         require_one_process(self.system.backend)
-        from rigidfluid.core.case.population_due import Moment, population_due  # few scenes have any
+        from rigidfluid.core.case.moment import Moment  # few scenes have any
+        from rigidfluid.core.case.population_due import population_due
 
         try:
             population = population_due(Moment(self.model, self.system, self.state, self.population, self.time))
