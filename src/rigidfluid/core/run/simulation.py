@@ -14,7 +14,7 @@ from rigidfluid.core.case.population import (
     Population,
     named_table,
     refuse_known_name,
-    refuse_unknown_name,
+    refuse_staying,
     require_one_process,
     subjects_by_name,
 )
@@ -319,8 +319,8 @@ class Simulation(Described):
         Raises
         ------
         SceneError
-            If the table is wrong, the body overlaps another one or a wall, or there are joints, mechanisms, springs to
-            the ground, a window, several processes, or a backend whose bodies cannot change.
+            If the table is wrong or has a spring or held directions, the body overlaps another one or a wall, or there
+            are a window, a scalar, several processes, or a backend whose bodies cannot change.
         MeshError
             If no mesh can be made around it.
         """
@@ -339,11 +339,12 @@ class Simulation(Described):
         Raises
         ------
         SceneError
-            If there is no such body, it is the last one, or bodies cannot change, as for `add`.
+            If there is no such body, a joint, a spring to the ground or a mechanism holds it, it is the last one, or
+            bodies cannot change, as for `add`.
         MeshError
             If no mesh can be made without it.
         """
-        refuse_unknown_name(self.model, name)
+        refuse_staying(self.model, name)
         self._exchange(self.population.without(name))
 
     def save(self) -> SavedRun:
@@ -421,8 +422,8 @@ class Simulation(Described):
             except BaseException:
                 self._follow(*before)
                 raise
-        kept = next_one.exchange.kept
-        self.recorder.extremes = self.recorder.extremes.among(kept, len(self.system.bodies))
+        stay = next_one.exchange.bodies
+        self.recorder.extremes = self.recorder.extremes.among(stay.kept, stay.places, len(self.system.bodies))
         self.recorder.record_exchange(exchange_rows(next_one.exchange, state, self.state, self.time), self)
 
     def _follow(self, model: Model, system: System, population: Population) -> None:

@@ -49,8 +49,9 @@ class SourceTable(RandomBodies):
 class SinkTable(Table):
     """Bodies leave in a region, near a surface, by a rule, or where a rule holds in such a place.
 
-    A sink has a `region` or `on`, a rule `when`, or both. Bodies that are prescribed or fixed stay, and so does the last
-    one of all.
+    A sink has a `region` or `on`, a rule `when`, or both. Bodies stay that are prescribed or fixed, that a joint, a
+    spring to the ground or held directions hold, or that are components of a mechanism, and so does the last one of
+    all.
 
     A rule is an expression as those of a [velocity](#boundary-type-velocity), of these names: `x`, `y`, `z`, the centre
     of mass, between periodic surfaces that of its image in the domain; `vx`, `vy`, `vz` and `speed`; `w` in 2D, `wx`,

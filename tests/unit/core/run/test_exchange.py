@@ -204,5 +204,6 @@ def test_a_name_is_not_used_twice() -> None:
 def test_joined_bodies_stay() -> None:
     joint = {"type": "rod", "between": ["first", "second"]}
     run = dry(joint=[joint])
-    with pytest.raises(SceneError, match="joint"):
-        run.add(THIRD)
+    run.add(THIRD)
+    with pytest.raises(SceneError, match=r"'first', which a joint.*may leave: third"):
+        run.remove("first")
