@@ -21,12 +21,14 @@ _SINGLE = ("speed", "age", "t", "radius", "volume", "mass")
 
 
 def leaving_bodies(now: Moment) -> list[int]:
-    """Rows of bodies that are to leave, all but one if nobody else is there; raises SceneError for a rule without
-    a finite value."""
+    """Rows of free bodies that are to leave, but none that a joint, a spring or a mechanism holds, and all but one if
+    nobody else is there; raises SceneError for a rule without a finite value."""
     if not now.model.sink_tables:
         return []
-    rows = np.flatnonzero(_may_leave(now) & _come_to_a_sink(now)).tolist()
-    return rows[: len(now.system.bodies) - 1]
+    system, rows = now.system, np.flatnonzero(~now.system.prescribed & _come_to_a_sink(now)).tolist()
+    staying = staying_bodies(now.model) if rows else ()
+    leaving = [row for row in rows if system.surfaces[row] not in staying]
+    return leaving[: len(system.bodies) - 1]
 
 
 @cache
@@ -54,13 +56,6 @@ def _vectors(dimension: int) -> tuple[tuple[str, ...], ...]:
     return tuple(axes), tuple(f"v{axis}" for axis in axes), ("w",) if dimension == 2 else ("wx", "wy", "wz")
 
 
-def _may_leave(now: Moment) -> BoolArray:
-    """Mask (n,) of the bodies that are not prescribed, nor held by joints, springs or mechanisms."""
-    staying = staying_bodies(now.model)
-    held = np.array([name in staying for name in now.system.surfaces[: len(now.system.bodies)]], dtype=bool)
-    return np.asarray(~now.system.prescribed & ~held)
-
-
 def _come_to_a_sink(now: Moment) -> BoolArray:
     """Mask (n,) of the bodies that are at one of the sinks, and for which its rule holds."""
     sinks = enumerate(now.model.sink_tables)
@@ -85,7 +80,7 @@ def _holds(now: Moment, sink: SinkTable, at: str) -> BoolArray:
     if sink.when is None:
         return np.ones(len(now.system.bodies), dtype=bool)
     found = rule(sink.when, f"{at}.when", now.model.dimension)(rule_values(now))
-    lost = np.flatnonzero(_may_leave(now) & ~(np.abs(found) <= LARGEST))
+    lost = np.flatnonzero(~now.system.prescribed & ~(np.abs(found) <= LARGEST))
     if lost.size:
         value, name = found[lost[0]], now.system.surfaces[lost[0]]
         remedy = "Write it so that it has a value there, as with max(…) or where(…)."
