@@ -132,7 +132,7 @@ def _findings_at_start(model: Model, system: System, start: Contacts) -> Iterato
 def findings(model: Model, system: System) -> Iterator[Finding]:
     """The answers to all questions about bodies wherever they are, in the order in which they are asked."""
     mesh, time = model.fluid.mesh, model.time
-    ends = {sink.on for sink in model.sink_tables}
+    ends = {sink.on for sink in model.sink_tables if sink.when is None}
     yield from chain(law_findings(system), open_face_findings(system, ends), strength_findings(system))
     yield from chain(overridden_findings(model.boundary_tables, model.domain), swarm_findings(model.swarm_tables))
     yield from source_findings(model)

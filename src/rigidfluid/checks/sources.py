@@ -21,7 +21,7 @@ def with_first_bodies(model: Model) -> Model:
     population = Population()
     for number, source in enumerate(model.source_tables):
         for count in range(min(FIRST, source.due(model.time.end))):
-            population = population.with_body(body_alone(model, number, count))
+            population = population.with_body(body_alone(model, number, count), 0.0)
     return population.ever(model, population.known(model)) if population else model
 
 

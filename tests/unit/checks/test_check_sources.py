@@ -52,7 +52,10 @@ def test_bodies_may_be_driven_to_where_they_leave() -> None:
     outlet = [{"on": "bottom", "type": "pressure", "pressure": 0.0}]
     free = POST | {"fixed": False}
     questions = [
-        {one.question for one in findings(wet_tables, POST, free | {"name": "b", "position": [0.3, 0.5]}, **more)}
-        for more in ({"boundary": outlet}, {"boundary": outlet, "sink": [{"on": "bottom"}]})
+        {
+            one.question
+            for one in findings(wet_tables, POST, free | {"name": "b", "position": [0.3, 0.5]}, boundary=outlet, **more)
+        }
+        for more in ({}, {"sink": [{"on": "bottom"}]}, {"sink": [{"on": "bottom", "when": "age > 5"}]})
     ]
-    assert ["open-face" in found for found in questions] == [True, False]
+    assert ["open-face" in found for found in questions] == [True, False, True]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rigidfluid.core.case.population_due import body_alone
+from rigidfluid.core.case.sinks import rule
 from rigidfluid.core.scene.all_errors import all_told
 from rigidfluid.core.scene.exchange_tables import SinkTable, SourceTable
 from rigidfluid.core.seeding.draws import Draws
@@ -58,15 +59,18 @@ def _check_source(table: SourceTable, number: int, model: Model) -> None:
 
 
 def _check_sink(table: SinkTable, at: str, model: Model) -> None:
-    if (table.region is None) == (table.on is None):
-        found = "neither" if table.on is None else "both"
-        raise SceneError(f"{at}.on", f"{found} of region and on", "one of them", "Say where bodies leave.")
+    if table.region is not None and table.on is not None:
+        raise SceneError(f"{at}.on", "both of region and on", "one of them", "Write two sinks, or leave one out.")
+    if table.region is None and table.on is None and table.when is None:
+        raise SceneError(f"{at}.on", "none of region, on and when", "one at least", "Say where or when bodies leave.")
+    if table.when is not None:
+        rule(table.when, f"{at}.when", model.dimension)
+    if table.gap is not None and table.on is None:
+        raise SceneError(f"{at}.gap", "gap without on", "gap with on", "Leave it out, or name the surface.")
     if table.region is not None:
-        if table.gap is not None:
-            raise SceneError(f"{at}.gap", "gap together with region", "gap with on", "Leave it out.")
         region = region_of(table.region, model.domain, f"{at}.region", model.registry)
         refuse_outside(region, DomainRegion(model.domain), f"{at}.region", Draws(model.seed))
-    elif table.on not in model.domain.names:
+    elif table.on is not None and table.on not in model.domain.names:
         raise SceneError(
             f"{at}.on", repr(table.on), f"a surface: {', '.join(model.domain.names)}", "Name one of these."
         )

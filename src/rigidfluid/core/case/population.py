@@ -8,6 +8,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+import numpy as np
+
 from rigidfluid.core.case.scene_model import scene_body
 from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.core.geometry.value_types import describe
@@ -17,6 +19,7 @@ from rigidfluid.core.model.types import Pose, Twist
 from rigidfluid.core.scene.body_tables import BodyTable
 from rigidfluid.core.scene.validation import read_table
 from rigidfluid.core.setup.assemble import assemble
+from rigidfluid.core.setup.changeable import has_links, staying_bodies
 from rigidfluid.core.setup.geometry_checks import check_places
 from rigidfluid.core.setup.model import Model
 from rigidfluid.core.setup.rigid_body import RigidBody
@@ -26,8 +29,9 @@ from rigidfluid.errors import MeshError, SceneError
 
 @dataclass(frozen=True)
 class Present:
-    """Pose and twist of bodies by ``names``, now."""
+    """Pose and twist of single bodies and of mechanisms by ``names``, at a ``time``."""
 
+    time: float
     names: tuple[str, ...]
     pose: Pose
     twist: Twist
@@ -36,68 +40,78 @@ class Present:
 @dataclass(frozen=True)
 class Population:
     """Changes of the bodies of a run: tables of those that ``entered``, and names of those that ``left``; ``places``:
-    keys of place and velocity of those that were there at the latest change, by name."""
+    keys of place and velocity of bodies and mechanisms that were there at the ``latest`` change, by name; ``since``:
+    when each one of those that entered did [time]."""
 
     entered: tuple[Mapping[str, Any], ...] = ()
     left: tuple[str, ...] = ()
     places: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    since: Mapping[str, float] = field(default_factory=dict)
+    latest: float = 0.0
 
     @classmethod
     def from_dict(cls, stored: Mapping[str, Any]) -> Population:
         """Population as `to_dict` gave it, or its `changes` alone."""
-        return cls(tuple(stored["entered"]), tuple(stored["gone"]), stored.get("places", {}))
+        changes = tuple(stored["entered"]), tuple(stored["gone"])
+        return cls(*changes, stored.get("places", {}), stored.get("since", {}), stored.get("latest", 0.0))
 
     def __bool__(self) -> bool:
         return bool(self.entered or self.left)
 
     def to_dict(self) -> dict[str, Any]:
         """Values that JSON can hold, for checkpoints."""
-        return self.changes | {"places": dict(self.places)}
+        return self.changes | {"places": dict(self.places), "since": dict(self.since), "latest": self.latest}
 
     @property
     def changes(self) -> dict[str, Any]:
         """Which have entered, and which are gone, as values that JSON can hold."""
         return {"entered": list(self.entered), "gone": list(self.left)}
 
-    def with_body(self, table: Mapping[str, Any]) -> Population:
-        """One with a body more, last of all."""
-        return replace(self, entered=(*self.entered, table))
+    def with_body(self, table: Mapping[str, Any], time: float) -> Population:
+        """One with a body more, last of all, which entered at a ``time``."""
+        return replace(self, entered=(*self.entered, table), since={**self.since, str(table["name"]): time})
 
     def without(self, name: str) -> Population:
         """One in which the body of this name has left."""
         return replace(self, left=(*self.left, name))
 
     def known(self, origin: Model) -> tuple[str, ...]:
-        """Names of all bodies that are or were there, in their order."""
-        return (*(body.name for body in origin.bodies), *(str(table["name"]) for table in self.entered))
+        """Names of all bodies that are or were there, in their order, and of the mechanisms after them."""
+        components = (body.name for body in origin.all_bodies[len(origin.bodies) :])
+        single = (*(body.name for body in origin.bodies), *(str(table["name"]) for table in self.entered))
+        return (*single, *components, *origin.mechanisms_by_name)
 
     def names(self, origin: Model) -> tuple[str, ...]:
-        """Names of the bodies at present, in their order."""
+        """Names of the bodies at present, in their order, and of the mechanisms after them."""
         return tuple(name for name in self.known(origin) if name not in self.left)
 
     def ever(self, origin: Model, names: Container[str]) -> Model:
         """The model of all bodies of these ``names`` that are or were there, as they started; raises as `model`."""
         bodies = (*origin.bodies, *self._entered(origin))
-        return origin.with_bodies(tuple(body for body in bodies if body.name in names))
+        return origin.with_bodies(tuple(body for body in bodies if body.name in names), origin.mechanisms)
 
     def placed(self, now: Present) -> Population:
         """One whose latest change is ``now``."""
-        return replace(self, places={name: _place(now, row) for row, name in enumerate(now.names)})
+        places = {name: _place(now, row) for row, name in enumerate(now.names)}
+        return replace(self, places=places, latest=now.time)
 
     def model(self, origin: Model) -> Model:
         """The model at the latest change: bodies of ``origin`` and those that entered, without those that left, in
         their places then; raises SceneError or PluginError for a table that is wrong."""
         bodies = [body for body in (*origin.bodies, *self._entered(origin)) if body.name not in self.left]
-        return origin.with_bodies(tuple(_moved(body, self.places.get(body.name, {})) for body in bodies))
+        placed = tuple(replace(one, **_keys(self.places.get(one.name, {}))) for one in origin.mechanisms)
+        return origin.with_bodies(tuple(_moved(body, self.places.get(body.name, {})) for body in bodies), placed)
 
     def _entered(self, origin: Model) -> Iterator[RigidBody]:
         return (_body(table, f"body {table.get('name')!r}", origin) for table in self.entered)
 
 
-def assemble_present(model: Model) -> System:
-    """System of a model whose bodies are on their way, and may be nearer to each other than at a start; raises
-    SceneError where two overlap."""
-    return assemble(model, _check_places)
+def assemble_present(origin: Model, model: Model, population: Population) -> System:
+    """System of the ``model`` of a ``population`` of the model ``origin``, whose bodies are on their way and may be
+    nearer to each other than at a start; raises SceneError where two overlap. Joints and springs are those of the
+    start."""
+    started = population.ever(origin, population.names(origin)) if has_links(model) else None
+    return assemble(model, _check_places, started, population.latest)
 
 
 def assemble_ever(model: Model) -> System:
@@ -124,15 +138,21 @@ def named_table(body: object) -> Mapping[str, Any]:
     table = read_table(BodyTable, body, "body")
     if not table.name:
         raise SceneError("body.name", "no name", "a name that no other body of the run has had", "Give one.")
+    for key in ("spring", "free"):
+        if getattr(table, key) is not None:
+            found, allowed = "one of a body that enters", "none: only bodies of the start are held"
+            raise SceneError(f"body.{key}", found, allowed, f"Leave {key!r} out.")
     return table.model_dump(mode="json", exclude_none=True)
 
 
-def refuse_unknown_name(model: Model, name: str) -> None:
-    """Raise SceneError where no body has this name, or no other one would be left."""
-    names = [body.name for body in model.bodies]
-    if name not in names:
-        raise SceneError("body", repr(name), f"a body: {', '.join(names)}", "Name another.")
-    if len(names) == 1:
+def refuse_staying(model: Model, name: str) -> None:
+    """Raise SceneError where no body has this name, it is held, or no other one would be left."""
+    staying, known = staying_bodies(model), [body.name for body in model.all_bodies]
+    if name not in known or name in staying:
+        found = f"{name!r}, which a joint, a spring or a mechanism holds" if name in staying else repr(name)
+        names = ", ".join(one for one in known if one not in staying)
+        raise SceneError("body", found, f"a body that may leave: {names or 'there is none'}", "Name another.")
+    if len(known) == 1:
         raise SceneError("body", f"{name!r}, the last one", "another body besides", "Keep it, or end the run.")
 
 
@@ -174,10 +194,19 @@ def _place(now: Present, row: int) -> dict[str, Any]:
 
 
 def _moved(body: RigidBody, place: Mapping[str, Any]) -> RigidBody:
-    """The body at its ``place``, if it is free with its velocities."""
-    unread = ("velocity", "angular_velocity") if body.is_prescribed else ()
-    keys: dict[str, Any] = {key: _unchanging(value) for key, value in place.items() if key not in unread}
+    """The body at its ``place``, if it is free with its velocities, which have no rounding in held directions."""
+    keys = _keys(place)
+    if body.is_prescribed:
+        keys = {key: value for key, value in keys.items() if "velocity" not in key}
+    elif keys and body.free is not None:
+        d = body.shape.dimension
+        twist = np.where(body.held_directions, 0.0, np.append(keys["velocity"], keys["angular_velocity"])).tolist()
+        keys |= {"velocity": tuple(twist[:d]), "angular_velocity": tuple(twist[d:])}
     return replace(body, **keys)
+
+
+def _keys(place: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: _unchanging(value) for key, value in place.items()}
 
 
 def _unchanging(value: Any) -> Any:

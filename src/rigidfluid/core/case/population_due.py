@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import product
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
+from rigidfluid.core.case.moment import Moment
 from rigidfluid.core.case.population import Population
-from rigidfluid.core.model.state import State
-from rigidfluid.core.model.system import System
+from rigidfluid.core.case.sinks import leaving_bodies
 from rigidfluid.core.model.types import Pose
-from rigidfluid.core.scene.exchange_tables import SinkTable, SourceTable
+from rigidfluid.core.scene.exchange_tables import SourceTable
 from rigidfluid.core.seeding.draws import Draws
 from rigidfluid.core.seeding.placement import Others
-from rigidfluid.core.seeding.regions import region_of
 from rigidfluid.core.seeding.seed import Occupied, Seeded, seed
 from rigidfluid.core.setup.model import Model
 from rigidfluid.errors import SceneError
@@ -24,20 +23,10 @@ _SOURCES = 1_000_000
 """First number of draws of sources: swarms have lower ones."""
 
 
-class Moment(NamedTuple):
-    """A run at a ``time``: its ``model``, ``system``, ``state``, and the ``population`` until then."""
-
-    model: Model
-    system: System
-    state: State
-    population: Population
-    time: float
-
-
 def population_due(now: Moment) -> Population:
     """The population with those who are due to leave or enter now; the same if nobody is. Raises SceneError for a
     source whose next body has no room in its region even without others."""
-    population, leaving = now.population, _leaving(now)
+    population, leaving = now.population, leaving_bodies(now)
     if not leaving and not any(missing(table, population, now.time) for table in now.model.source_tables):
         return population
     for row in leaving:
@@ -66,7 +55,7 @@ def _after_source(now: Moment, number: int, population: Population, others: Othe
         except SceneError:
             body_alone(now.model, number, count)  # without room even alone it would wait for ever
             break
-        population, others = population.with_body(_named(found, source, count)), found.bodies
+        population, others = population.with_body(_named(found, source, count), now.time), found.bodies
     return population, others
 
 
@@ -91,25 +80,3 @@ def _seeded(model: Model, number: int, count: int, others: Others) -> Seeded:
     draws = Draws(model.seed, _SOURCES + number, count)
     occupied = Occupied(model.domain, others, model.domain.alone, model.registry)
     return seed(model.source_tables[number].swarm(count), f"source.{number}", draws, occupied, grow=False)
-
-
-def _leaving(now: Moment) -> list[int]:
-    """Rows of free bodies that have come to a sink, all but one if nobody else is there."""
-    if not now.model.sink_tables:
-        return []
-    rows = [row for row in np.flatnonzero(~now.system.prescribed).tolist() if _has_come(now, row)]
-    return rows[: len(now.system.bodies) - 1]
-
-
-def _has_come(now: Moment, row: int) -> bool:
-    return any(_is_at(now, row, sink, f"sink.{number}") for number, sink in enumerate(now.model.sink_tables))
-
-
-def _is_at(now: Moment, row: int, sink: SinkTable, at: str) -> bool:
-    centre, domain = now.system.lattice.wrapped(now.state.pose.position[row : row + 1]), now.model.domain
-    if sink.region is not None:
-        return bool(region_of(sink.region, domain, f"{at}.region", now.model.registry).contains(centre)[0])
-    assert sink.on is not None
-    radius = now.system.bounding_radii[row]
-    distance = domain.pieces[domain.names.index(sink.on)].shape.signed_distance(centre)[0] - radius
-    return bool(distance <= (radius if sink.gap is None else sink.gap))

@@ -107,12 +107,18 @@ def formula(source: str, at: str, variable: str) -> Callable[[FloatArray], Float
 
     Raises SceneError for an invalid formula.
     """
-    value, _ = _compiled(source, at, (variable, "pi"))
+    evaluate = formula_in(source, at, (variable,))
+    return lambda values: evaluate({variable: values})
 
-    def evaluate(values: FloatArray) -> FloatArray:
+
+def formula_in(source: str, at: str, variables: tuple[str, ...]) -> Operation:
+    """The same of several ``variables`` by their names, all (N,)."""
+    value, _ = _compiled(source, at, (*variables, "pi"))
+
+    def evaluate(values: Names) -> FloatArray:
         with np.errstate(all="ignore"):
-            found = np.asarray(value({variable: values, "pi": np.asarray(np.pi)}), dtype=float)
-        return np.broadcast_to(found, values.shape).copy()
+            found = np.asarray(value({**values, "pi": np.asarray(np.pi)}), dtype=float)
+        return np.broadcast_to(found, values[variables[0]].shape).copy()
 
     return evaluate
 
@@ -153,6 +159,11 @@ class _Reader:
                 return self._number(node, number)
             case ast.Name(id=name):
                 return self._name(node, name)
+            case ast.UnaryOp(op=ast.Not(), operand=part):
+                return _applied(_opposite, [self._condition(part, depth)])
+            case ast.BoolOp(op=operator, values=parts):
+                joined = _all if isinstance(operator, ast.And) else _any
+                return _applied(joined, [self._condition(part, depth) for part in parts])
             case ast.UnaryOp(op=operator, operand=operand) if type(operator) in _OPERATORS:
                 return _applied(_OPERATORS[type(operator)], [self.operation(operand, depth + 1)])
             case ast.BinOp(left=left, op=operator, right=right) if type(operator) in _OPERATORS:
@@ -169,6 +180,13 @@ class _Reader:
         powers = isinstance(node, ast.BinOp) and isinstance(node.op, ast.BitXor)
         remedy = "Write ** for powers." if powers else "Use what is allowed alone."
         raise self._refusal(node, "not allowed", remedy)
+
+    def _condition(self, node: ast.expr, depth: int) -> Operation:
+        """Compile a comparison, or several that are joined."""
+        match node:
+            case ast.Compare() | ast.BoolOp() | ast.UnaryOp(op=ast.Not()):
+                return self.operation(node, depth + 1)
+        raise self._refusal(node, "not a comparison", "Compare it, as in a > 0.")
 
     def _number(self, node: ast.expr, number: float) -> Operation:
         try:
@@ -199,7 +217,7 @@ class _Reader:
 
 
 def _allowed(known: Sequence[str]) -> str:
-    return f"numbers, {', '.join(known)}, + - * / **, < <= > >=, and {', '.join(_FUNCTIONS)}"
+    return f"numbers, {', '.join(known)}, + - * / **, < <= > >=, and or not, and {', '.join(_FUNCTIONS)}"
 
 
 def _constant(number: float) -> Operation:
@@ -214,3 +232,13 @@ def _applied(function: Callable[..., FloatArray], arguments: Sequence[Operation]
 def _all(*conditions: FloatArray) -> FloatArray:
     """1 where all hold, and else 0."""
     return np.asarray(reduce(np.logical_and, conditions), dtype=float)
+
+
+def _any(*conditions: FloatArray) -> FloatArray:
+    """1 where one holds, and else 0."""
+    return np.asarray(reduce(np.logical_or, conditions), dtype=float)
+
+
+def _opposite(condition: FloatArray) -> FloatArray:
+    """1 where it does not hold, and else 0."""
+    return np.asarray(np.logical_not(condition), dtype=float)

@@ -19,6 +19,9 @@ _IN_BODIES = {
 _ALONE = {
     **{"time": "time", "gap": "length", "size": "time", "pressure": "force/length^(d-1)", "area": "length^(d-1)"},
     **dict.fromkeys(("contact_fx", "contact_fy", "contact_fz"), "force"),
+    "mass": "mass",
+    **dict.fromkeys(("px", "py", "pz"), "mass·length/time"),
+    **dict.fromkeys(("l", "lx", "ly", "lz"), "mass·length²/time"),
 }
 
 
@@ -37,4 +40,14 @@ def summary_quantity(path: str) -> str:
     table, _, key = path.partition(".")
     if table == "energy":
         return "" if "relative" in key else "energy"
+    if table == "exchanges":
+        return _in_exchanges(key)
     return {"time": "time", "smallest_gap": "length"}.get(table, "")
+
+
+def _in_exchanges(key: str) -> str:
+    """Quantity of a key of the account of bodies that entered and left."""
+    part, _, name = key.partition(".")
+    vectors = {"momentum": "mass·length/time", "angular_momentum": "mass·length²/time"}
+    known = {"mass": "mass", "kinetic": "energy", **vectors}
+    return {"mass": "mass", "energy": "energy"}.get(part, known.get(name.partition(".")[0], ""))

@@ -22,10 +22,10 @@ class Extremes:
         """Extremes of no state at all."""
         return cls(np.inf, np.zeros(bodies))
 
-    def among(self, kept: IntArray, bodies: int) -> Extremes:
-        """Extremes among so many ``bodies``, the first of which are in the ``kept`` rows here."""
+    def among(self, kept: IntArray, places: IntArray, bodies: int) -> Extremes:
+        """Extremes among so many ``bodies``; those of the ``kept`` rows here are in these ``places`` (m,)."""
         speed = np.zeros(bodies)
-        speed[: len(kept)] = self.highest_speed[kept]
+        speed[places] = self.highest_speed[kept]
         return Extremes(self.smallest_gap, speed)
 
     def after(self, gaps: FloatArray, twist: Twist) -> Extremes:

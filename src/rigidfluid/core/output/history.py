@@ -87,8 +87,8 @@ class History(Described):
         ----------
         name : str
             ``bodies``, ``contacts``, ``joints``, ``energy``, ``steps``, ``probes``, ``driving``, ``stresslets``,
-            ``walls``, ``statistics``, ``mesh_error``, ``sensitivities``, ``error_estimates``, ``scalar`` or
-            ``scalar_fluxes``.
+            ``walls``, ``statistics``, ``exchanges``, ``mesh_error``, ``sensitivities``, ``error_estimates``, ``scalar``
+            or ``scalar_fluxes``.
         only : iterable of str, optional
             The columns that are wanted; all if not given. A folder that an earlier version has written has all that it
             knew.
@@ -204,6 +204,11 @@ class History(Described):
     def statistics(self) -> dict[str, NDArray[Any]]:
         """The table of statistics.csv: a row per accepted step, with ``output.statistics``."""
         return self.table("statistics")
+
+    @property
+    def exchanges(self) -> dict[str, NDArray[Any]]:
+        """The table of exchanges.csv: a row per body that entered or left."""
+        return self.table("exchanges")
 
     @property
     def mesh_error(self) -> dict[str, NDArray[Any]]:

@@ -54,6 +54,7 @@ def columns(
         "stresslets": ("time", "step", "body", *stresslet),
         "walls": ("time", "step", "wall", *force, *(f"contact_{name}" for name in force), "area"),
         "statistics": ("time", "step", *_statistics_columns(dimension)),
+        "exchanges": ("time", "step", "body", "change", *position, *exchange_columns(dimension)),
         "mesh_error": ("time", "step", "error", "dissipation", "relative"),
         "sensitivities": ("time", "step", "parameter", "body", *_derivative_columns(dimension)),
         "scalar": ("time", "step", *SCALAR_COLUMNS),
@@ -109,6 +110,12 @@ def _statistics_columns(dimension: int) -> Iterator[str]:
     yield from (*_symmetric_components("stress_", dimension), "relative_viscosity", *differences)
 
 
+def exchange_columns(dimension: int) -> tuple[str, ...]:
+    """Columns of what a body brings when it enters or takes when it leaves, in order."""
+    angular = ("l",) if dimension == 2 else _components("l", 3)
+    return ("mass", *_components("p", dimension), *angular, "kinetic")
+
+
 def _components(name: str, dimension: int) -> tuple[str, ...]:
     return tuple(name + axis for axis in "xyz"[:dimension])
 
@@ -144,6 +151,7 @@ def records(
         "stresslets": list(_stresslet_rows(system, state, stamp)),
         "walls": list(_wall_rows(system, state, stamp, forces)),
         "statistics": [],
+        "exchanges": [],
         "mesh_error": list(_error_rows(state, stamp)),
         "sensitivities": [],
         "scalar": [] if state.scalar is None else [(*stamp, *(getattr(state.scalar, name) for name in SCALAR_COLUMNS))],

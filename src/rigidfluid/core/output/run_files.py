@@ -29,6 +29,7 @@ TABLES = {
     "sensitivities": "derivatives by the keys in `output.sensitivities`, a row per key and body",
     "scalar": "content, balance and extremes of the scalar of a table `[scalar]`",
     "scalar_fluxes": "its flux into the fluid and mean value on each body and each surface of the domain",
+    "exchanges": "mass, momentum and energy of each body that entered or left",
     "error_estimates": "a row per body with `output.error_bars`",
 }
 """Names of a run's tables, and what is in each."""
@@ -63,7 +64,8 @@ _ADDED = (
 
 def _written(table: str) -> str:
     """When rows of a table are written."""
-    return "each `output.every`" if table == "error_estimates" else "each step"
+    seldom = {"error_estimates": "each `output.every`", "exchanges": "when bodies enter or leave"}
+    return seldom.get(table, "each step")
 
 
 FILES = (

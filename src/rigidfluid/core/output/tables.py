@@ -105,7 +105,7 @@ def _refuse_second_name(path: Path) -> None:
 
 
 KINDS: Mapping[str, type[float | int | str]] = {
-    **dict.fromkeys(("body", "a", "b", "joint", "surface", "wall", "parameter"), str),
+    **dict.fromkeys(("body", "a", "b", "joint", "surface", "wall", "change", "parameter"), str),
     **dict.fromkeys(("step", "probe", "unknowns", "remeshes", "cells", "bodies", "contacts"), int),
 }
 """Types of the columns of names and whole numbers; all others hold numbers with a fraction."""

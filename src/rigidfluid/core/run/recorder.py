@@ -15,7 +15,7 @@ from rigidfluid.core.output.checkpoint import Checkpoint
 from rigidfluid.core.output.extremes import Extremes
 from rigidfluid.core.output.history import History
 from rigidfluid.core.output.point_sets import point_sets
-from rigidfluid.core.output.records import Records, StepCost, count_cells, records
+from rigidfluid.core.output.records import Records, Row, StepCost, count_cells, records
 from rigidfluid.core.output.writer import Writer
 from rigidfluid.core.run.companions import Companions
 from rigidfluid.core.run.statistics_row import statistics_rows
@@ -60,6 +60,10 @@ class Recorder:
             rows["statistics"] = statistics_rows(simulation.system, state, simulation.time, forces)
         self._extend({**rows, **self.companions.step_rows(simulation)}, simulation)
         self.extremes = self.extremes.after(state.gaps, state.twist)
+
+    def record_exchange(self, rows: list[Row], simulation: Simulation) -> None:
+        """Add the rows of bodies that entered and left between two states."""
+        self._extend({"exchanges": rows}, simulation)
 
     def output(self, simulation: Simulation) -> None:
         """Write fields, points and a checkpoint; the backend is asked in any case: no result depends on writing."""

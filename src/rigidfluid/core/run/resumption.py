@@ -66,8 +66,8 @@ def earlier_of(model: Model, out: Path | None, system: System, clock: Clock, fil
     path = out / checkpoint_name(backend.ranks.rank)
     population = Population.from_dict(json.loads(checkpoint.population))
     if population:
-        model = population.model(model)
-        system = assemble_present(model)
+        origin, model = model, population.model(model)
+        system = assemble_present(origin, model, population)
     with backend.ranks.raise_on_all():
         require_fit(path, checkpoint, system, clock)
         require_fluid(path, checkpoint.state, backend)

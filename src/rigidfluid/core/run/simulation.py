@@ -14,7 +14,7 @@ from rigidfluid.core.case.population import (
     Population,
     named_table,
     refuse_known_name,
-    refuse_unknown_name,
+    refuse_staying,
     require_one_process,
     subjects_by_name,
 )
@@ -44,6 +44,7 @@ from rigidfluid.core.run.caller_input import (
 from rigidfluid.core.run.clock import Clock
 from rigidfluid.core.run.control import body_row, following, present_motion, with_applied
 from rigidfluid.core.run.exchange import exchanged, successor
+from rigidfluid.core.run.exchange_rows import exchange_rows
 from rigidfluid.core.run.fluid_now import fluid_now
 from rigidfluid.core.run.initial_state import initial_state
 from rigidfluid.core.run.mesh_keys import updater_of
@@ -318,14 +319,14 @@ class Simulation(Described):
         Raises
         ------
         SceneError
-            If the table is wrong, the body overlaps another one or a wall, or there are joints, mechanisms, springs to
-            the ground, a window, several processes, or a backend whose bodies cannot change.
+            If the table is wrong or has a spring or held directions, the body overlaps another one or a wall, or there
+            are a window, a scalar, several processes, or a backend whose bodies cannot change.
         MeshError
             If no mesh can be made around it.
         """
         table = named_table(body)
         refuse_known_name(self.population, self.model, table["name"])
-        self._exchange(self.population.with_body(table))
+        self._exchange(self.population.with_body(table, self.time))
 
     def remove(self, name: str) -> None:
         """Let a body leave, from now on: in a fluid, which takes its place with its velocity.
@@ -338,11 +339,12 @@ class Simulation(Described):
         Raises
         ------
         SceneError
-            If there is no such body, it is the last one, or bodies cannot change, as for `add`.
+            If there is no such body, a joint, a spring to the ground or a mechanism holds it, it is the last one, or
+            bodies cannot change, as for `add`.
         MeshError
             If no mesh can be made without it.
         """
-        refuse_unknown_name(self.model, name)
+        refuse_staying(self.model, name)
         self._exchange(self.population.without(name))
 
     def save(self) -> SavedRun:
@@ -396,7 +398,8 @@ class Simulation(Described):
         if not (self.model.source_tables or self.model.sink_tables):
             return
         require_one_process(self.system.backend)
-        from rigidfluid.core.case.population_due import Moment, population_due  # few scenes have any
+        from rigidfluid.core.case.moment import Moment  # few scenes have any
+        from rigidfluid.core.case.population_due import population_due
 
         try:
             population = population_due(Moment(self.model, self.system, self.state, self.population, self.time))
@@ -409,17 +412,19 @@ class Simulation(Described):
     def _exchange(self, population: Population) -> None:
         """Go on with other bodies; nothing is changed where they do not fit."""
         require_one_process(self.system.backend)
-        before = self.model, self.system, self.population
+        self.recorder.refuse_closed("an exchange of bodies")
+        before, state = (self.model, self.system, self.population), self.state
         with told_memory(), self._threads(), self.watch("mesh"), subjects_by_name(population.names(self.origin)):
-            next_one = successor(self.origin, self.model, self.system, self.state, population)
+            next_one = successor(self.origin, self.model, self.system, state, population, self.time)
             self._follow(next_one.model, next_one.exchange.after, next_one.population)
             try:
-                self.state = exchanged(next_one, self.state, self.mesh_updater, self.clock)
+                self.state = exchanged(next_one, state, self.mesh_updater, self.clock)
             except BaseException:
                 self._follow(*before)
                 raise
-        kept = next_one.exchange.kept
-        self.recorder.extremes = self.recorder.extremes.among(kept, len(self.system.bodies))
+        stay = next_one.exchange.bodies
+        self.recorder.extremes = self.recorder.extremes.among(stay.kept, stay.places, len(self.system.bodies))
+        self.recorder.record_exchange(exchange_rows(next_one.exchange, state, self.state, self.time), self)
 
     def _follow(self, model: Model, system: System, population: Population) -> None:
         """Go on with a system, of the model's bodies."""

@@ -24,6 +24,7 @@ from rigidfluid.core.output.history import History
 from rigidfluid.core.output.records import LEDGER_COLUMNS, count_cells
 from rigidfluid.core.output.verdict import verdict
 from rigidfluid.core.run.cycles import cycles, start_remarks
+from rigidfluid.core.run.exchange_account import exchange_account
 from rigidfluid.core.run.process import peak_memory
 from rigidfluid.core.run.remarks import layer_remarks, sensitivity_remarks, source_remarks
 from rigidfluid.core.run.remesh_jumps import jump_remarks, remesh_jumps
@@ -41,7 +42,7 @@ FIGURES = (
     *("time", "unknowns", "cells", "worst_quality", "ranks", "steps", "rejected_steps", "unsettled_steps", "remeshes"),
     *("failed_remeshes", "wall_time", "cpu_time", "wall_time_per_stage"),
     *("reynolds_solid_density", "reynolds", "smallest_gap", "rest_position", "cycles", "remesh_jumps", "energy"),
-    *("mesh_error", "error_estimates"),
+    *("mesh_error", "error_estimates", "exchanges"),
 )
 """Keys of summary.json that hold numbers of a run, or tables and lists of them."""
 ACCOUNT = ("at_hand", "round_off", "put_in", "created", "lost", "unaccounted", "grad_div")
@@ -92,6 +93,7 @@ def summarise(simulation: Simulation, status: str) -> dict[str, Any]:
         **found,
         **_caller_values(state, system),
         **({"population": simulation.population.changes} if simulation.population else {}),
+        **exchange_account(simulation),
         **_mesh_errors(simulation.history),
         "remesh_jumps": jumps,
         **_error_figures(simulation),

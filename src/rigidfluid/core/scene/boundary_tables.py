@@ -50,8 +50,9 @@ class WallTable(_BoundaryTable):
 class VelocityTable(VaryingTable):
     """A prescribed velocity, given directly or by its `flux`.
 
-    Values may be expressions of x, y, z and t in quotes, with `pi`, `+ - * / **`, comparisons, and the functions `sin`,
-    `cos`, `tan`, `tanh`, `exp`, `log`, `sqrt`, `abs`, `min`, `max` and `where(condition, then, otherwise)`.
+    Values may be expressions of x, y, z and t in quotes, with `pi`, `+ - * / **`, comparisons, which `and`, `or` and
+    `not` join, and the functions `sin`, `cos`, `tan`, `tanh`, `exp`, `log`, `sqrt`, `abs`, `min`, `max` and
+    `where(condition, then, otherwise)`.
     """
 
     type: Literal["velocity"] = Field(description="The condition")

@@ -47,9 +47,16 @@ class SourceTable(RandomBodies):
 
 
 class SinkTable(Table):
-    """A place where bodies leave: a region, or the neighbourhood of a surface.
+    """Bodies leave in a region, near a surface, by a rule, or where a rule holds in such a place.
 
-    Either `region` or `on` is given. Bodies that are prescribed or fixed stay, and so does the last one of all.
+    A sink has a `region` or `on`, a rule `when`, or both. Bodies stay that are prescribed or fixed, that a joint, a
+    spring to the ground or held directions hold, or that are components of a mechanism, and so does the last one of
+    all.
+
+    A rule is an expression as those of a [velocity](#boundary-type-velocity), of these names: `x`, `y`, `z`, the centre
+    of mass, between periodic surfaces that of its image in the domain; `vx`, `vy`, `vz` and `speed`; `w` in 2D, `wx`,
+    `wy`, `wz` in 3D, the angular velocity; `age`, the time since the body entered or the run started; `t`, the time;
+    `radius`, of the smallest ball around the centre of mass that contains the body; `volume` and `mass`.
     """
 
     region: RegionTable | None = Field(
@@ -60,4 +67,7 @@ class SinkTable(Table):
         default=None,
         description="Distance of the body's bounding ball from `on` below which the body leaves; its bounding radius "
         "if not given [length]",
+    )
+    when: str | None = Field(
+        default=None, description='Rule: a body leaves when its value is above 0, as `"age > 5 and speed < 0.01"`'
     )

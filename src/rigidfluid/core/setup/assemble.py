@@ -41,22 +41,29 @@ from rigidfluid.core.setup.window import build_window, open_wake_end
 _MOST_PAIRS = 1000
 
 
-def assemble(model: Model, check: Callable[[Model, Pose], None] = check_geometry) -> System:
-    """Make the system of a model, and ``check`` that its objects fit together.
+def assemble(
+    model: Model,
+    check: Callable[[Model, Pose], None] = check_geometry,
+    started: Model | None = None,
+    time: float = 0.0,
+) -> System:
+    """Make the system of a model whose bodies are in their places at a ``time``, and ``check`` that its objects fit
+    together; ``started``: the same bodies in the places where joints and springs fit, the model itself if not given.
 
     Raises SceneError if a body overlaps another or a surface of the domain, or the mesh is
     too coarse for a gap.
     """
     masses = masses_of(model)
-    motions, given = _motions(model, masses)
-    pose = motions.poses(motions.pose, 0.0)
+    motions, given = _motions(model, masses, time)
+    pose = motions.poses(motions.pose, time)
     check(model, pose)
     window = build_window(model, pose)
     problem = model.fluid.problem(open_wake_end(model.conditions, window), motions, model.domain)
     if problem is not None and model.fluid.scalar is not None:
         problem = with_scalar(problem, model.fluid.scalar, model)
-    joints = build_joints(model, pose, motions, given, _least_resistance(model))
-    motions = motions.starting_with(joints.fitting(motions.pose, motions.twist, 0.0))
+    first = motions if started is None else _motions(started, masses, 0.0)[0]
+    joints = build_joints(model, first.poses(first.pose, 0.0), first, given, _least_resistance(model))
+    motions = motions.starting_with(joints.fitting(motions.pose, motions.twist, time))
     loads = build_loads(model, masses, motions, joints)
     interactions = interactions_of(model.named_laws, model.surfaces, loads)
     check_interactions(interactions, model.stepping, model.shapes, model.walls)
@@ -78,7 +85,7 @@ def assemble(model: Model, check: Callable[[Model, Pose], None] = check_geometry
         inertia=masses.inertia,
         weight=masses.weight,
         pose=pose,
-        twist=motions.kinematics(motions.pose, 0.0).component_twist(motions.twist),
+        twist=motions.kinematics(motions.pose, time).component_twist(motions.twist),
         motions=motions,
         joints=joints,
         assembly=_assemblies(model),
@@ -107,13 +114,13 @@ def assemble(model: Model, check: Callable[[Model, Pose], None] = check_geometry
     )
 
 
-def _motions(model: Model, masses: Masses) -> tuple[Motions, PrescribedMotion]:
-    """The motions that carry the bodies, where and as they start, and those that are given."""
+def _motions(model: Model, masses: Masses, time: float) -> tuple[Motions, PrescribedMotion]:
+    """The motions that carry the bodies, where and as they start at a ``time``, and those that are given."""
     wholes: tuple[Start, ...] = (*model.bodies, *model.mechanisms)
     start = initial_pose(wholes, model.dimension)
-    given = prescribed_motion(model.bodies, start)
+    given = prescribed_motion(model.bodies, start, time)
     single = model.prescribed[: len(model.bodies)]
-    started = _initial_twist(initial_twist(wholes, model.dimension), single, given(0.0))
+    started = _initial_twist(initial_twist(wholes, model.dimension), single, given(time))
     own = masses.mass, masses.inertia, model.prescribed, start, started
     return (CarriedBodies(model.mechanisms_by_name, *own) if model.mechanisms else SingleBodies(*own)), given
 

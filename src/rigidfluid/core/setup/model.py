@@ -34,7 +34,7 @@ from rigidfluid.core.setup.description import describe
 from rigidfluid.core.setup.fluid import Fluid, NoFluid
 from rigidfluid.core.setup.image_checks import crossed_lattice
 from rigidfluid.core.setup.model_checks import check_model
-from rigidfluid.core.setup.pair_forces import PairForce
+from rigidfluid.core.setup.pair_forces import PairForce, told_in_order
 from rigidfluid.core.setup.placed_bodies import Arrangement
 from rigidfluid.core.setup.rigid_body import JoinedBodies, PlacedMechanism, RigidBody
 from rigidfluid.described import Described, first_names
@@ -158,12 +158,19 @@ class Model(Arrangement, Described):
             object.__setattr__(told, name, value)
         return told
 
-    def with_bodies(self, bodies: tuple[RigidBody, ...]) -> Model:
-        """The same model with other bodies, told in results and checkpoints as this one; a detector that nobody named
-        is chosen for them, and laws for contacts of those that are gone are left out."""
+    def with_bodies(self, bodies: tuple[RigidBody, ...], mechanisms: tuple[PlacedMechanism, ...]) -> Model:
+        """The same model with other bodies, and mechanisms in other places, told in results and checkpoints as this
+        one; a detector that nobody named is chosen for them, and laws and long-range forces of those that are gone are
+        left out."""
         gone = {body.name for body in self.bodies} - {body.name for body in bodies}
-        laws = tuple(law for law in self.named_laws if gone.isdisjoint(law.names))
-        changed = replace(self, bodies=bodies, laws=laws, detector=self.detector if self.names_detector else None)
+        changed = replace(
+            self,
+            bodies=bodies,
+            mechanisms=mechanisms,
+            laws=tuple(law for law in self.named_laws if gone.isdisjoint(law.names)),
+            pair_forces=tuple(one for one in told_in_order(self.pair_forces) if gone.isdisjoint(one.between)),
+            detector=self.detector if self.names_detector else None,
+        )
         if self._scene is not None:
             changed = changed.told_by(self._scene, self._detector_why)
         changed.__dict__["document"] = self.document

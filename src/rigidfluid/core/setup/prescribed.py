@@ -75,8 +75,8 @@ def _replace_row(rows: FloatArray, row: int, values: FloatArray | float) -> Floa
     return changed
 
 
-def prescribed_motion(bodies: Sequence[RigidBody], pose: Pose) -> PrescribedMotion:
-    """The motion that is prescribed to ``bodies``, the first of those that are at ``pose`` at the start."""
+def prescribed_motion(bodies: Sequence[RigidBody], pose: Pose, start: float = 0.0) -> PrescribedMotion:
+    """The motion that is prescribed to ``bodies``, the first of those that are at ``pose`` at the ``start``."""
     n, d = pose.position.shape
     twist, amplitude, frequency = np.zeros((n, 3 if d == 2 else 6)), np.zeros((n, d)), np.zeros(n)
     for i, body in enumerate(bodies):
@@ -85,4 +85,4 @@ def prescribed_motion(bodies: Sequence[RigidBody], pose: Pose) -> PrescribedMoti
         twist[i, d:] = motion.angular_velocity or 0.0
         amplitude[i] = motion.amplitude or 0.0
         frequency[i] = motion.frequency or 0.0
-    return PrescribedMotion(Prescription(twist, twist, np.zeros(n), amplitude, frequency, np.zeros(n), pose))
+    return PrescribedMotion(Prescription(twist, twist, np.zeros(n), amplitude, frequency, np.full(n, start), pose))

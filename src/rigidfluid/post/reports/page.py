@@ -40,6 +40,18 @@ _ENERGIES = {
     "put_in": "put in: stored at the start, and the most that was supplied",
     "at_hand": "at hand: the most that was there at once",
 }
+_MASSES = {
+    "start": "mass of all bodies at the start",
+    "entered": "of those that entered",
+    "left": "of those that left",
+    "there": "of those that are there at the end",
+    "residual": "not accounted for",
+}
+_BROUGHT = {
+    "exchange": "energy brought by bodies that entered, less what left with others",
+    "bodies": "of it kinetic energy of these bodies themselves",
+    "fluid_and_contacts": "of it energy of the fluid and of contacts, which change with them",
+}
 _SHARES = {
     "largest_creation": "created from nowhere at most, over what was at hand",
     "largest_loss": "lost at most, beyond friction of impacts, over what was at hand",
@@ -131,16 +143,25 @@ def _cycles(mechanisms: Mapping[str, Any]) -> Iterator[str]:
 def _changes(results: Results) -> Iterator[str]:
     """A table of the first bodies that entered or left."""
     time, end, rows = results.time, len(results.time) - 1, []
-    for name, there in zip(results.names, results.present.T, strict=True):
+    for name, there, mass in zip(results.names, results.present.T, results.system.mass.tolist(), strict=True):
         if not there.all():
             first, last = np.flatnonzero(there)[[0, -1]]
             entered = float(time[first - 1]) if first > 0 else ""
-            rows.append((name, entered, float(time[last]) if last < end else ""))
+            rows.append((name, entered, float(time[last]) if last < end else "", mass))
     if rows:
         yield "<h2>Bodies that entered or left</h2>"
-        yield grid(("body", "entered [time]", "left [time]"), rows[:_MOST_BODIES])
+        yield grid(("body", "entered [time]", "left [time]", "mass [mass]"), rows[:_MOST_BODIES])
         if len(rows) > _MOST_BODIES:
-            yield f"<p>And {len(rows) - _MOST_BODIES} more bodies, in bodies.csv.</p>"
+            yield f"<p>And {len(rows) - _MOST_BODIES} more bodies, in exchanges.csv.</p>"
+    if "exchanges" in results.summary:
+        yield from _exchange_sums(results.summary["exchanges"])
+
+
+def _exchange_sums(account: Mapping[str, Any]) -> Iterator[str]:
+    """Tables of the mass that was there, came and went, and of the bodies' part of the energy that did."""
+    mass, energy = account["mass"], account["energy"]
+    yield table([(f"{words} [mass]", mass[key]) for key, words in _MASSES.items()])
+    yield table([(f"{words} [energy]", energy[key]) for key, words in _BROUGHT.items()])
 
 
 def _coefficients(bodies: Sequence[tuple[str, Figures]]) -> Iterator[str]:

@@ -31,6 +31,7 @@ def check_figure(figure: FigureTable, scene: Scene) -> None:
             "cycles": scene.mechanism,
             "mesh_error": model_of(scene).fluid.estimates_errors,
             "error_estimates": scene.output.error_bars,
+            "exchanges": scene.source or scene.sink,
         }
         _refuse_unknown("", table, [name for name in FIGURES if only_with.get(name, True)])
         if table == "energy":

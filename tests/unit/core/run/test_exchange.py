@@ -92,6 +92,16 @@ def test_a_prescribed_body_goes_on_as_prescribed() -> None:
     np.testing.assert_allclose(run.state.twist.velocity[1], alone.state.twist.velocity[1], rtol=0, atol=1e-14)
 
 
+def test_a_prescribed_body_moves_from_where_it_enters() -> None:
+    run = dry(FIRST, SECOND, fluid={"gravity": [0.0, 0.0]})
+    run.go(0.1)
+    guest = {name: value for name, value in THIRD.items() if "velocity" not in name}
+    run.add(guest | {"prescribed": {"velocity": [0.4, 0.0], "amplitude": [0.0, 0.03], "frequency": 2.0}})
+    run.go(0.2)
+    swung = 0.03 * (np.sin(0.4 * np.pi * 2.0) - np.sin(0.4 * np.pi))
+    np.testing.assert_allclose(run.state.pose.position[2], [0.5 + 0.1 * 0.4, 0.25 + swung], rtol=0, atol=1e-12)
+
+
 def test_the_account_closes_in_a_fluid() -> None:
     run = wet()
     run.go(0.06)
@@ -194,5 +204,6 @@ def test_a_name_is_not_used_twice() -> None:
 def test_joined_bodies_stay() -> None:
     joint = {"type": "rod", "between": ["first", "second"]}
     run = dry(joint=[joint])
-    with pytest.raises(SceneError, match="joint"):
-        run.add(THIRD)
+    run.add(THIRD)
+    with pytest.raises(SceneError, match=r"'first', which a joint.*may leave: third"):
+        run.remove("first")

@@ -137,6 +137,7 @@ def test_each_rank_keeps_its_part_and_the_root_what_is_there_once(tmp_path):
             "stresslets.csv",
             "walls.csv",
             "statistics.csv",
+            "exchanges.csv",
             "mesh_error.csv",
             "sensitivities.csv",
             "error_estimates.csv",

@@ -124,7 +124,7 @@ def test_the_same_seed_gives_the_same_bodies_after_resuming(tmp_path: Path) -> N
         ({"sink": [{"region": OUTSIDE}]}, "sink.0.region: found a region from"),
         ({"sink": [{"on": "outlet"}]}, "sink.0.on"),
         ({"sink": [{"region": REGION, "gap": 0.1}]}, "sink.0.gap"),
-        ({"joint": [{"type": "rod", "between": ["post"], "at": [0.5, 0.5]}]}, "joint"),
+        ({"output": {"every": 1.0, "error_bars": True}}, "output.error_bars"),
     ],
 )
 def test_wrong_tables_are_told_by_their_keys(changes: dict[str, Any], field: str) -> None:

@@ -29,6 +29,8 @@ X, Y = POINTS.T
         "where(x > 0, 1/x, 0)": np.array([0.0, 1.0, 0.5]),
         "-(x >= 1) + (x < 1)": np.array([1.0, -1.0, -1.0]),
         "x\n  + y": X + Y,
+        "(x > 0 and y > 0) + 2*(x > 0 or y > 0)": np.array([2.0, 2.0, 3.0]),
+        "where(not x > 0 and not (y > 1 or y < 0), t, 2)": np.array([3.0, 2.0, 2.0]),
     }.items(),
 )
 def test_values(text: str, expected: np.ndarray) -> None:
@@ -60,6 +62,8 @@ BAD = {
     "text": ("'a'*9", "not allowed: \"'a'\"", "allowed"),
     "truth": ("True", "not allowed: 'True'", "allowed"),
     "imaginary": ("1j", "not allowed: '1j'", "allowed"),
+    "number for a condition": ("x > 0 and y", "not a comparison: 'y' at character 11", "a > 0"),
+    "negated number": ("not x", "not a comparison: 'x' at character 5", "a > 0"),
     "bits": ("1 << 9", "not allowed", "allowed"),
     "keyword": ("sin(x=1)", "not allowed", "allowed"),
     "too few arguments": ("where(x, 1)", "2 arguments", "Give where 3"),

@@ -513,7 +513,7 @@ def test_the_error_of_the_mesh_is_a_figure_where_it_is_estimated() -> None:
 
 def test_figures_are_keys_of_the_summary() -> None:
     summary = rigidfluid.run(rigidfluid.load_scene(SCENES / "dry_bounce.toml", ["time.end=2e-5"])).summary
-    of_few_scenes = {"cycles", "mesh_error", "error_estimates"}
+    of_few_scenes = {"cycles", "mesh_error", "error_estimates", "exchanges"}
     assert set(FIGURES) - of_few_scenes == {key for key, value in summary.items() if not isinstance(value, str)} - {
         "scene", "seed", "versions", "files", "auto_epsilon", "peak_memory", "latest_failed_remesh", "remarks"
     }  # fmt: skip

@@ -1,0 +1,95 @@
+"""Bodies that leave: in regions, near surfaces, and by rules about their state."""
+
+from __future__ import annotations
+
+from functools import cache
+from itertools import chain
+
+import numpy as np
+
+from rigidfluid.core.case.moment import Moment
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.nested.expressions import Names, Operation, formula_in
+from rigidfluid.core.scene.exchange_tables import SinkTable
+from rigidfluid.core.scene.validation import LARGEST
+from rigidfluid.core.seeding.regions import region_of
+from rigidfluid.core.setup.changeable import staying_bodies
+from rigidfluid.errors import SceneError
+
+_SINGLE = ("speed", "age", "t", "radius", "volume", "mass")
+"""Names in rules that are not components of a vector."""
+
+
+def leaving_bodies(now: Moment) -> list[int]:
+    """Rows of free bodies that are to leave, but none that a joint, a spring or a mechanism holds, and all but one if
+    nobody else is there; raises SceneError for a rule without a finite value."""
+    if not now.model.sink_tables:
+        return []
+    system, rows = now.system, np.flatnonzero(~now.system.prescribed & _come_to_a_sink(now)).tolist()
+    staying = staying_bodies(now.model) if rows else ()
+    leaving = [row for row in rows if system.surfaces[row] not in staying]
+    return leaving[: len(system.bodies) - 1]
+
+
+@cache
+def rule(source: str, at: str, dimension: int) -> Operation:
+    """Function of the names of `rule_values` by a ``source`` under the key ``at``; raises SceneError where it is no
+    formula of these."""
+    return formula_in(source, at, (*chain(*_vectors(dimension)), *_SINGLE))
+
+
+def rule_values(now: Moment) -> Names:
+    """State of all bodies by the names in rules, (n,) each."""
+    system, twist = now.system, now.state.twist
+    names = system.surfaces[: len(system.bodies)]
+    since = np.array([now.population.since.get(name, 0.0) for name in names])
+    speed, time = np.linalg.norm(twist.velocity, axis=1), np.full(len(names), now.time)
+    single = (speed, time - since, time, system.bounding_radii, system.volumes, system.mass)
+    vectors = (_centres(now), twist.velocity, twist.angular_velocity)
+    columns = [column for vector in vectors for column in vector.T]
+    return dict(zip((*chain(*_vectors(system.dimension)), *_SINGLE), (*columns, *single), strict=True))
+
+
+def _vectors(dimension: int) -> tuple[tuple[str, ...], ...]:
+    """Names in rules of the components of place, velocity and angular velocity."""
+    axes = "xyz"[:dimension]
+    return tuple(axes), tuple(f"v{axis}" for axis in axes), ("w",) if dimension == 2 else ("wx", "wy", "wz")
+
+
+def _come_to_a_sink(now: Moment) -> BoolArray:
+    """Mask (n,) of the bodies that are at one of the sinks, and for which its rule holds."""
+    sinks = enumerate(now.model.sink_tables)
+    found = [_is_there(now, sink, f"sink.{n}") & _holds(now, sink, f"sink.{n}") for n, sink in sinks]
+    return np.asarray(np.any(found, axis=0))
+
+
+def _is_there(now: Moment, sink: SinkTable, at: str) -> BoolArray:
+    """Mask (n,) of the bodies in the place of a sink, all if it has none."""
+    centre, domain = _centres(now), now.model.domain
+    if sink.region is not None:
+        return region_of(sink.region, domain, f"{at}.region", now.model.registry).contains(centre)
+    if sink.on is None:
+        return np.ones(len(centre), dtype=bool)
+    radius = now.system.bounding_radii
+    distance = domain.pieces[domain.names.index(sink.on)].shape.signed_distance(centre) - radius
+    return np.asarray(distance <= (radius if sink.gap is None else sink.gap))
+
+
+def _holds(now: Moment, sink: SinkTable, at: str) -> BoolArray:
+    """Mask (n,) of the bodies for which the rule of a sink holds, all if it has none."""
+    if sink.when is None:
+        return np.ones(len(now.system.bodies), dtype=bool)
+    found = rule(sink.when, f"{at}.when", now.model.dimension)(rule_values(now))
+    lost = np.flatnonzero(~now.system.prescribed & ~(np.abs(found) <= LARGEST))
+    if lost.size:
+        value, name = found[lost[0]], now.system.surfaces[lost[0]]
+        remedy = "Write it so that it has a value there, as with max(…) or where(…)."
+        raise SceneError(
+            f"{at}.when", f"{value} from {sink.when!r} for body {name!r}", f"finite values, up to {LARGEST:g}", remedy
+        )
+    return found > 0.0
+
+
+def _centres(now: Moment) -> FloatArray:
+    """Centres of mass (n, d), along periods those of the images in the domain [length]."""
+    return now.system.lattice.wrapped(now.state.pose.position)
