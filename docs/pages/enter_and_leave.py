@@ -140,8 +140,8 @@ ABOUT = """A [`[[source]]`](../howto/enter-and-leave.md) lets a body enter near 
 and ellipses of one density at random places. They sink past a fixed post, and a `[[sink]]` takes them out above the
 bottom. *Exchange* is the energy that came with them, less what they took. Part of it is their own kinetic energy, by
 [exchanges.csv](../results.md#exchangescsv), the rest that of the fluid around them and of contacts. The *residual* is
-what the account of energies does not know of at the end. The greatest residual in a step after an exchange shows what the new mesh, the
-transferred flow and the short first step leave.
+what the account of energies does not know of at the end. The greatest residual in a step after an exchange shows what
+the new mesh, the transferred flow and the short first step leave.
 
 """
 
