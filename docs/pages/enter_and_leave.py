@@ -29,12 +29,13 @@ def page(work: Work) -> Page:
         "left",
         "there",
         "exchange",
+        "of it the bodies'",
         "by gravity",
         "dissipated",
         "residual",
         "of gravity's work",
         "greatest in a step after an exchange",
-        "area in - out - there",
+        "mass in - out - there",
         "s",
     )
     return Page("Bodies that enter and leave", ABOUT + table(head, map(_told, rows)) + AFTER, {"": _figure(rows)})
@@ -76,30 +77,27 @@ def measured() -> Iterator[dict[str, Any]]:
     """A row for each step."""
     for step in STEPS:
         began, run = time.process_time(), Simulation(scene(step))
-        areas = {name: body.volume for name, body in zip(run.bodies, run.system.bodies, strict=True)}
         after, exchange = [], 0.0
         while not run.ended:
             residual = run.state.ledger.residual
             run.step()
-            areas |= {name: body.volume for name, body in zip(run.bodies, run.system.bodies, strict=True)}
             if run.state.ledger.exchange != exchange:
                 exchange = run.state.ledger.exchange
                 after.append(run.state.ledger.residual - residual)
-        ledger, population = run.state.ledger, run.population
-        entered = [areas[table["name"]] for table in population.entered]
-        left, there = [areas[name] for name in population.left], [areas[name] for name in run.bodies if name != "post"]
-        bodies = run.history.bodies
+        run.finish("complete")
+        ledger, account, bodies = run.state.ledger, run.history.summary["exchanges"], run.history.bodies
         yield {
             "step": step,
-            "entered": len(entered),
-            "left": len(left),
-            "there": len(there),
+            "entered": account["entered"]["bodies"],
+            "left": account["left"]["bodies"],
+            "there": len(run.bodies) - 1,
             "exchange": ledger.exchange,
+            "own": account["energy"]["bodies"],
             "gravity": ledger.gravity,
             "dissipation": ledger.dissipation,
             "residual": ledger.residual,
             "after": max(after, key=abs),
-            "area": sum(entered) - sum(left) - sum(there),
+            "mass": account["mass"]["residual"],
             "s": time.process_time() - began,
             "time": bodies["time"].tolist(),
             "body": bodies["body"].tolist(),
@@ -112,12 +110,13 @@ def _told(row: dict[str, Any]) -> Iterator[str]:
     yield from (f"{row['step']:g}", str(row["entered"]), str(row["left"]), str(row["there"]))
     yield from (
         f"{row['exchange']:.5f}",
+        f"{row['own']:.5f}",
         f"{row['gravity']:.5f}",
         f"{row['dissipation']:.5f}",
         f"{row['residual']:+.6f}",
     )
     yield f"{100.0 * row['residual'] / row['gravity']:+.3f} %"
-    yield from (f"{row['after']:+.1e}", f"{row['area']:.1e}", f"{row['s']:.0f}")
+    yield from (f"{row['after']:+.1e}", f"{row['mass']:.1e}", f"{row['s']:.0f}")
 
 
 def _figure(rows: list[dict[str, Any]]) -> Figure:
@@ -139,14 +138,15 @@ def _figure(rows: list[dict[str, Any]]) -> Figure:
 
 ABOUT = """A [`[[source]]`](../howto/enter-and-leave.md) lets a body enter near the top of a closed box every .6, disks
 and ellipses of one density at random places. They sink past a fixed post, and a `[[sink]]` takes them out above the
-bottom. *Exchange* is the energy that came with them, less what they took. The *residual* is what the account of
-energies does not know of at the end. The greatest residual in a step after an exchange shows what the new mesh, the
-transferred flow and the short first step leave.
+bottom. *Exchange* is the energy that came with them, less what they took. Part of it is their own kinetic energy, by
+[exchanges.csv](../results.md#exchangescsv), the rest that of the fluid around them and of contacts. The *residual* is
+what the account of energies does not know of at the end. The greatest residual in a step after an exchange shows what
+the new mesh, the transferred flow and the short first step leave.
 
 """
 
 AFTER = """
 
-The residual is signed: energy that came from nowhere is negative. The areas of who entered, who left and who is there
-at the end add up.
+The residual is signed: energy that came from nowhere is negative. *Mass in - out - there* is the mass of the start and
+of who entered, less that of who left and of who is there at the end.
 """

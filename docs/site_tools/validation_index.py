@@ -66,7 +66,7 @@ SUBJECTS = {
     },
     "Meshes and distances": {
         "seams": "Disks that cross periodic surfaces: paths from two places and in a longer channel, and momentum",
-        "enter_and_leave": "Ten bodies enter a box of fluid and leave it: account of energy and area",
+        "enter_and_leave": "Ten bodies enter a box of fluid and leave it: account of energy and mass",
         "seeding": "Seeded swarms: fraction, gaps, radial distribution and cost",
         "mesh_estimate": "Cells that follow an estimate of their error: cells to an error compared with graded meshes",
         "mesh_for_forces": "Cells that follow the error of forces: cells to an error compared with graded meshes",
