@@ -54,7 +54,7 @@ def source_remarks(model: Model, population: Population, time: float) -> list[Re
     return [
         Remark(
             "note",
-            f"{count} bodies of the source {name!r} were due and had no room in its region",
+            f"the source {name!r} had no room in its region for {count} that were due",
             "Widen source.region, or let bodies enter more seldom.",
         )
         for name, count in waiting.items()

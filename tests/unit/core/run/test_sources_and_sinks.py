@@ -78,7 +78,8 @@ def test_a_body_waits_for_room() -> None:
     assert all(gap >= 0.1 - 0.02 for gap in np.diff(first))
     run.finish("complete")
     waiting = 13 - len(first)
-    assert run.history.summary["remarks"][-1]["text"].startswith(f"{waiting} bodies of the source 'grain' were due")
+    told = run.history.summary["remarks"][-1]["text"]
+    assert told.endswith(f"'grain' had no room in its region for {waiting} that were due")
 
 
 def test_bodies_leave_in_a_region() -> None:
