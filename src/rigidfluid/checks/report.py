@@ -15,6 +15,7 @@ from rigidfluid.checks.domain_rows import DomainRow, domain_row
 from rigidfluid.checks.energy_error import energy_error_findings
 from rigidfluid.checks.film import film_findings
 from rigidfluid.checks.finding import GRADES, Finding
+from rigidfluid.checks.free_fall import free_fall_findings
 from rigidfluid.checks.impact import impact_findings
 from rigidfluid.checks.joints import joint_findings
 from rigidfluid.checks.mechanisms import mechanism_findings
@@ -135,7 +136,7 @@ def findings(model: Model, system: System) -> Iterator[Finding]:
     ends = {sink.on for sink in model.sink_tables if sink.when is None}
     yield from chain(law_findings(system), open_face_findings(system, ends), strength_findings(system))
     yield from chain(overridden_findings(model.boundary_tables, model.domain), swarm_findings(model.swarm_tables))
-    yield from source_findings(model)
+    yield from chain(source_findings(model), free_fall_findings(model, system))
     yield from chain(unit_findings(model, system), tolerance_findings(time), facet_findings(system))
     yield from chain(joint_findings(model, system), mechanism_findings(model, system))
     if system.fluid is None:

@@ -18,13 +18,14 @@ _OPPOSITE = -1.0 + 1e-9
 
 class Shear(NamedTuple):
     """Shear between two walls: its ``rate`` γ [1/time], the ``stress`` μγ of the fluid alone, None where its viscosity
-    varies [force/length^(d-1)], the direction ``along`` (d,) in which one slides and the normal ``across`` (d,) towards
-    it [1]."""
+    varies [force/length^(d-1)], the direction ``along`` (d,) in which one ``wall`` slides, by its name, and the normal
+    ``across`` (d,) towards it [1]."""
 
     rate: float
     stress: float | None
     along: FloatArray
     across: FloatArray
+    wall: str
 
     def part(self, one: FloatArray, other: FloatArray, stress: FloatArray) -> FloatArray:
         """Component (…) of stresses Σ (…, d, d), ``one``·Σ·``other`` of two directions (d,)."""
@@ -41,6 +42,11 @@ class Shear(NamedTuple):
         along, across = (self.part(way, way, stress) for way in (self.along, self.across))
         vorticity = np.trace(stress, axis1=-2, axis2=-1) - along - across
         return np.stack([along - across, across - vorticity], axis=-1)[..., : stress.shape[-1] - 1]
+
+    def viscosity_at_wall(self, traction: FloatArray) -> FloatArray | None:
+        """Viscosity -t·τ/(μγ) (…) by tractions τ (…, d) on the wall that slides along, over the fluid's; None where it
+        varies [1]."""
+        return None if self.stress is None else -(traction @ self.along) / self.stress
 
     def added_viscosity(self, stress: FloatArray) -> FloatArray | None:
         """Viscosity t·Σ·n/(μγ) (…) that stresses Σ (…, d, d) add to the fluid's, over it; None where it varies [1]."""
@@ -72,7 +78,7 @@ def _shear(one: Wall, two: Wall, normal: FloatArray, middle: FloatArray, viscosi
     change, distance = slides[1] - slides[0], float((places[1] - places[0])[0] @ normal)
     size = float(np.linalg.norm(change))
     rate = size / distance
-    return Shear(rate, viscosity and viscosity * rate, change / max(size, np.finfo(float).tiny), normal)
+    return Shear(rate, viscosity and viscosity * rate, change / max(size, np.finfo(float).tiny), normal, two.name)
 
 
 def _sliding(wall: Wall, place: FloatArray) -> FloatArray:

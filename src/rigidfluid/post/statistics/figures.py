@@ -16,6 +16,7 @@ from rigidfluid.post.statistics.profiles import Profile
 from rigidfluid.post.statistics.samples import Samples
 from rigidfluid.post.statistics.structure_factor import StructureFactor
 from rigidfluid.post.statistics.suspension_stress import SuspensionStress
+from rigidfluid.post.statistics.wall_stresses import WallStresses
 
 
 class Statistics(NamedTuple):
@@ -34,6 +35,7 @@ class Statistics(NamedTuple):
     profile: Profile
     contacts: ContactNetwork
     suspension: SuspensionStress | None
+    walls: WallStresses | None
     wet: bool
 
     def to_dict(self) -> dict[str, Any]:
@@ -73,6 +75,7 @@ class Statistics(NamedTuple):
                 "force_on": {name: force.to_list() for name, force in contacts.on_walls.items()},
             },
             "suspension_stress": None if self.suspension is None else self.suspension.to_dict(),
+            "walls": None if self.walls is None else self.walls.to_dict(),
         }
 
     @property
@@ -90,6 +93,8 @@ class Statistics(NamedTuple):
             f"share in the largest group: {told(contacts.largest)}",
         ]
         lines += [f"force on {name}: {told(force)} [force]" for name, force in contacts.on_walls.items()]
+        if self.walls is not None and self.walls.relative_viscosity is not None:
+            lines.append(f"viscosity at the walls over that of the fluid: {told(self.walls.relative_viscosity)}")
         if self.suspension is None and self.wet:
             lines.append(
                 "stress of the suspension: none without stresslets; set output.stresslets = true and run again"

@@ -33,6 +33,7 @@ from rigidfluid.post.statistics.profiles import LAYERS, profile
 from rigidfluid.post.statistics.samples import SAMPLES, samples_of
 from rigidfluid.post.statistics.structure_factor import structure_factor
 from rigidfluid.post.statistics.suspension_stress import suspension_stress
+from rigidfluid.post.statistics.wall_stresses import wall_stresses
 
 if TYPE_CHECKING:
     from rigidfluid.core.run.simulation import Simulation
@@ -97,8 +98,8 @@ def measure_statistics(
 
 
 def tables_of(history: History) -> dict[str, dict[str, Any]]:
-    """Tables of contacts and stresslets of a run; nothing of one that an earlier version has not written."""
-    folder, names = history.folder, ("contacts", "stresslets")
+    """Tables of contacts, stresslets and walls of a run; nothing of one that an earlier version has not written."""
+    folder, names = history.folder, ("contacts", "stresslets", "walls")
     written = [name for name in names if folder is None or name == names[0] or table_path(folder, name).exists()]
     return {name: history.table(name) if name in written else {} for name in names}
 
@@ -112,8 +113,8 @@ def measured(
     most: int = SAMPLES,
     outputs: int = OUTPUTS,
 ) -> Statistics:
-    """Statistics of these results, with their ``tables`` of contacts and stresslets, in at ``most`` so many states; the
-    fluid's at most at so many ``outputs``."""
+    """Statistics of these results, with their ``tables`` of contacts, stresslets and walls, in at ``most`` so many
+    states; the fluid's at most at so many ``outputs``."""
     if across not in list(results.axes):
         raise OutputError("--across", across, f"one of {', '.join(results.axes)}", "Name an axis.")
     samples, axis = samples_of(results, since, until, most), results.axes.index(across)
@@ -135,5 +136,6 @@ def measured(
         profile(samples, axis, fluid_layers(results, samples, axis, LAYERS, outputs)),
         contact_network(rows),
         stress,
+        wall_stresses(samples, tables["walls"]) if tables["walls"] else None,
         results.system.fluid is not None,
     )

@@ -34,7 +34,8 @@ def section(results: Results) -> Section:
     try:
         found = measured(results, tables, most=max(1, MOST // count), outputs=OUTPUTS)
     except OutputError as error:
-        return Section(["<h2>Statistics</h2>", f'<p class="note">{escape(f"None: {error}")}</p>'])
+        told_of = f"None: {error.found}. rigidfluid statistics measures them between times that are chosen."
+        return Section(["<h2>Statistics</h2>", f'<p class="note">{escape(told_of)}</p>'])
     parts = ["<h2>Statistics</h2><ul>", *(f"<li>{escape(line)}</li>" for line in found.lines), "</ul>"]
     parts += [] if found.suspension is None else [_stresses(found.suspension, found.units.pressure)]
     return Section(parts, [("statistics", _WORDS, statistics_plot(found), ("png", "svg"))])

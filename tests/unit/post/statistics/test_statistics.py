@@ -38,6 +38,7 @@ from rigidfluid.post.statistics.report_section import _stresses, section
 from rigidfluid.post.statistics.samples import Samples, samples_of
 from rigidfluid.post.statistics.structure_factor import structure_factor
 from rigidfluid.post.statistics.suspension_stress import StressFigures, SuspensionStress, suspension_stress
+from rigidfluid.post.statistics.wall_stresses import wall_stresses
 
 
 def made(
@@ -337,7 +338,7 @@ def test_the_report_says_why_a_run_has_no_statistics(tmp_path: Path) -> None:
     run.close()
     report(tmp_path, sections=(section,))
     assert (
-        "None: statistics: found from 0.02 to 0.06 bodies that enter or leave: body3"
+        "None: from 0.02 to 0.06 bodies that enter or leave: body3. rigidfluid statistics"
         in (tmp_path / "report.html").read_text()
     )
 
@@ -390,6 +391,28 @@ def sheared(dimension: int, **more: Any) -> System:
         "output": {"every": 1.0},
     }
     return assemble(model_of(rigidfluid.scene_from_dict(tables | more)))
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_tractions_are_forces_over_areas_and_the_wall_that_slides_along_is_held_back(dimension: int) -> None:
+    """At a rate of 2 in a fluid of viscosity 3: one wall goes along x, and the other one back."""
+    random, shear = np.random.default_rng(5), shear_of_walls(sheared(dimension))
+    assert shear is not None
+    way = {"top": 1.0, "front": 1.0, "bottom": -1.0, "back": -1.0}[shear.wall]
+    samples, forces = made(random.random((32, 2, dimension)), shear=shear), random.normal(size=(64, 2, dimension))
+    walls = np.array([shear.wall, "other"] * 32)
+    table = {"step": np.repeat(samples.step, 2), "wall": walls, "area": np.tile([4.0, 5.0], 32)} | {
+        f"{kind}f{axis}": forces[:, column, n]
+        for column, kind in enumerate(("", "contact_"))
+        for n, axis in enumerate("xyz"[:dimension])
+    }
+    found, tractions = wall_stresses(samples, table), forces.sum(axis=1)
+    assert found is not None
+    np.testing.assert_allclose(found.by_surface[shear.wall].value, tractions[::2].mean(axis=0) / 4.0)
+    np.testing.assert_allclose(found.by_surface["other"].value, tractions[1::2].mean(axis=0) / 5.0)
+    assert found.relative_viscosity is not None
+    assert found.relative_viscosity.value == pytest.approx(-way * tractions[::2, 0].mean() / 4.0 / 6.0)
+    assert wall_stresses(replace(samples, step=samples.step + 100.0), table) is None
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -493,7 +516,7 @@ def test_the_viscosity_of_a_sheared_suspension_is_what_its_walls_feel(tmp_path: 
             "body": disks,
             "mesh": {"size": 1.5, "size_body": 0.3},
             "time": {"end": 0.02, "step": 0.005},
-            "output": {"every": 0.02, "stresslets": True},
+            "output": {"every": 0.02, "stresslets": True, "walls": True},
         }
     )
     history = rigidfluid.run(scene, tmp_path)
@@ -509,3 +532,7 @@ def test_the_viscosity_of_a_sheared_suspension_is_what_its_walls_feel(tmp_path: 
     assert told["fluid"]["stress"][0][0][1] == pytest.approx(2.0 * (told["relative_viscosity"][0] - 1.0), rel=1e-6)
     assert told["fluid"]["viscosity"][0] == pytest.approx(told["relative_viscosity"][0] - 1.0, rel=1e-12)
     assert any(line.startswith("viscosity over that of the fluid: 1.") for line in found.lines)
+    assert found.walls is not None
+    assert found.walls.relative_viscosity is not None
+    assert found.walls.relative_viscosity.value == pytest.approx(found.suspension.relative_viscosity.value, rel=1e-6)
+    assert any(line.startswith("viscosity at the walls over that of the fluid: 1.") for line in found.lines)
