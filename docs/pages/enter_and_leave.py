@@ -89,7 +89,7 @@ def measured() -> Iterator[dict[str, Any]]:
         yield {
             "step": step,
             "entered": account["entered"]["bodies"],
-            "left": account["left"]["bodies"],
+            "left": account["gone"]["bodies"],
             "there": len(run.bodies) - 1,
             "exchange": ledger.exchange,
             "own": account["energy"]["bodies"],

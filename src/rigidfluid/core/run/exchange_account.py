@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from rigidfluid.core.geometry.arrays import BoolArray
 from rigidfluid.core.output.records import exchange_columns
-from rigidfluid.core.run.exchange_rows import ENTERED, LEFT
+from rigidfluid.core.run.exchange_rows import ENTERED, GONE
 
 if TYPE_CHECKING:
     from rigidfluid.core.run.simulation import Simulation
@@ -21,17 +21,17 @@ def exchange_account(simulation: Simulation) -> dict[str, Any]:
     if not simulation.population:
         return {}
     table, dimension = simulation.history.exchanges, simulation.origin.dimension
-    entered, left = (_sums(table, table["change"] == change, dimension) for change in (ENTERED, LEFT))
+    entered, gone = (_sums(table, table["change"] == change, dimension) for change in (ENTERED, GONE))
     start = sum(body.density * body.shape.volume for body in simulation.origin.all_bodies)
     there = float(simulation.system.mass.sum())
-    mass = {"start": start, "entered": entered["mass"], "left": left["mass"], "there": there}
-    own, exchange = entered["kinetic"] - left["kinetic"], simulation.state.ledger.exchange
+    mass = {"start": start, "entered": entered["mass"], "gone": gone["mass"], "there": there}
+    own, exchange = entered["kinetic"] - gone["kinetic"], simulation.state.ledger.exchange
     return {
         "exchanges": {
-            "mass": {**mass, "residual": start + mass["entered"] - mass["left"] - there},
+            "mass": {**mass, "residual": start + mass["entered"] - mass["gone"] - there},
             "energy": {"exchange": exchange, "bodies": own, "fluid_and_contacts": exchange - own},
             ENTERED: entered,
-            LEFT: left,
+            GONE: gone,
         }
     }
 

@@ -14,14 +14,14 @@ from rigidfluid.core.model.types import Pose, Twist
 from rigidfluid.core.output.records import Row
 from rigidfluid.core.run.exchange import Exchange
 
-ENTERED, LEFT = "entered", "left"
+ENTERED, GONE = "entered", "gone"
 
 
 def exchange_rows(exchange: Exchange, before: State, after: State, time: float) -> list[Row]:
     """Rows of those that left a state ``before`` an exchange, and then of those that entered."""
     stamp = (time, before.count)
-    left = _rows(exchange.before, before, exchange.gone, (*stamp, LEFT))
-    return [*left, *_rows(exchange.after, after, exchange.come, (*stamp, ENTERED))]
+    gone = _rows(exchange.before, before, exchange.gone, (*stamp, GONE))
+    return [*gone, *_rows(exchange.after, after, exchange.come, (*stamp, ENTERED))]
 
 
 def _rows(system: System, state: State, bodies: IntArray, told: tuple[float, int, str]) -> Iterator[Row]:

@@ -43,7 +43,7 @@ _ENERGIES = {
 _MASSES = {
     "start": "mass of all bodies at the start",
     "entered": "of those that entered",
-    "left": "of those that left",
+    "gone": "of those that left",
     "there": "of those that are there at the end",
     "residual": "not accounted for",
 }

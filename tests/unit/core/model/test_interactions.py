@@ -277,7 +277,7 @@ REFUSED: dict[str, tuple[Tables, str]] = {
     ),
     "option": (NORMAL | {"epsilon": -1.0}, "interaction.0.epsilon: found -1.0; .*greater than 0"),
     "cutoff": (FILM | {"cutoff": 0.01}, r"interaction.0.cutoff: found 0.01; .*below interaction.0.range = 0.01"),
-    "idle": (NORMAL | {"epsilon": "auto"}, r'interaction.0.epsilon: found "auto" with body.0'),
+    "idle": (NORMAL | {"epsilon": "auto"}, r"interaction.0.epsilon: found \"auto\" with body 'left_disk' that"),
 }
 
 

@@ -74,7 +74,7 @@ def test_a_row_has_what_a_body_took() -> None:
     run.go(0.1)
     run.remove("second")
     found, mass = row(run, 0), 2.0 * np.pi * 0.1**2
-    assert (found["body"], found["change"]) == ("second", "left")
+    assert (found["body"], found["change"]) == ("second", "gone")
     assert found["py"] == pytest.approx(0.0, abs=1e-12)
     assert found["y"] == pytest.approx(0.6 + 0.1 * 0.1 - 0.5 * 0.1**2, rel=1e-12)
     assert found["mass"] == pytest.approx(mass, rel=1e-12)
@@ -123,14 +123,14 @@ def test_masses_add_up_and_energies_have_their_parts() -> None:
     run.go()
     run.finish("complete")
     account, rows = run.history.summary["exchanges"], run.history.exchanges
-    left = int((rows["change"] == "left").sum())
-    assert account["left"]["bodies"] == left >= 3
+    left = int((rows["change"] == "gone").sum())
+    assert account["gone"]["bodies"] == left >= 3
     assert account["entered"]["bodies"] == len(rows["time"]) - left == left + len(run.bodies) - 1
-    assert account["entered"]["mass"] > account["left"]["mass"] > 0.0
+    assert account["entered"]["mass"] > account["gone"]["mass"] > 0.0
     assert account["mass"]["there"] == pytest.approx(sum(run.system.mass), rel=1e-14)
     assert account["mass"]["residual"] == pytest.approx(0.0, abs=1e-15)
     assert account["entered"]["momentum"] == pytest.approx([0.0, -account["entered"]["mass"]], rel=1e-12, abs=1e-15)
-    energy, own = account["energy"], 0.5 * (account["entered"]["mass"] - account["left"]["mass"])
+    energy, own = account["energy"], 0.5 * (account["entered"]["mass"] - account["gone"]["mass"])
     assert energy["bodies"] == pytest.approx(own, rel=1e-10)
     assert energy["exchange"] == pytest.approx(own, rel=1e-10)
     assert energy["fluid_and_contacts"] == pytest.approx(0.0, abs=1e-14)

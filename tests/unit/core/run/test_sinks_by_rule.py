@@ -36,7 +36,7 @@ def run_of(*bodies: dict[str, Any], sink: dict[str, Any], **tables: Any) -> Simu
 def left(run: Simulation) -> dict[str, float]:
     """Times when bodies left."""
     rows = run.history.exchanges
-    gone = rows["change"] == "left"
+    gone = rows["change"] == "gone"
     return dict(zip(rows["body"][gone].tolist(), rows["time"][gone].tolist(), strict=True))
 
 
