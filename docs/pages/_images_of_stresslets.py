@@ -24,10 +24,10 @@ def image_strain(dimension: int, period: float, distance: float) -> float:
     inverse_cubes = 4.0 * zeta(1.5) * (zeta(1.5, 0.25) - zeta(1.5, 0.75)) / 8.0
     one = np.arange(-MODES, MODES + 1.0)
     x, z = (wave.ravel() for wave in np.meshgrid(one, one))
-    number = np.hypot(x, z)
-    share = np.divide(x, number, out=np.zeros_like(x), where=number > 0.0) ** 2
-    depth = half * number[number > 0.0]
-    walls = share[number > 0.0] * _in_plane(depth) + (1.0 - share[number > 0.0]) * _along_walls(depth)
+    some = (x != 0.0) | (z != 0.0)
+    number = np.hypot(x, z)[some]
+    share, depth = (x[some] / number) ** 2, half * number
+    walls = share * _in_plane(depth) + (1.0 - share) * _along_walls(depth)
     return 0.5 - 3.0 / (16.0 * np.pi) * inverse_cubes * along + float(walls.sum())
 
 

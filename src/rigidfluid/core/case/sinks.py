@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cache
-from itertools import chain
 
 import numpy as np
 
@@ -35,7 +34,7 @@ def leaving_bodies(now: Moment) -> list[int]:
 def rule(source: str, at: str, dimension: int) -> Operation:
     """Function of the names of `rule_values` by a ``source`` under the key ``at``; raises SceneError where it is no
     formula of these."""
-    return formula_in(source, at, (*chain(*_vectors(dimension)), *_SINGLE))
+    return formula_in(source, at, _names(dimension))
 
 
 def rule_values(now: Moment) -> Names:
@@ -47,19 +46,22 @@ def rule_values(now: Moment) -> Names:
     single = (speed, time - since, time, system.bounding_radii, system.volumes, system.mass)
     vectors = (_centres(now), twist.velocity, twist.angular_velocity)
     columns = [column for vector in vectors for column in vector.T]
-    return dict(zip((*chain(*_vectors(system.dimension)), *_SINGLE), (*columns, *single), strict=True))
+    return dict(zip(_names(system.dimension), (*columns, *single), strict=True))
 
 
-def _vectors(dimension: int) -> tuple[tuple[str, ...], ...]:
-    """Names in rules of the components of place, velocity and angular velocity."""
+def _names(dimension: int) -> tuple[str, ...]:
+    """Names in rules, first those of the components of place, velocity and angular velocity."""
     axes = "xyz"[:dimension]
-    return tuple(axes), tuple(f"v{axis}" for axis in axes), ("w",) if dimension == 2 else ("wx", "wy", "wz")
+    turning = ("w",) if dimension == 2 else ("wx", "wy", "wz")
+    return (*axes, *(f"v{axis}" for axis in axes), *turning, *_SINGLE)
 
 
 def _come_to_a_sink(now: Moment) -> BoolArray:
     """Mask (n,) of the bodies that are at one of the sinks, and for which its rule holds."""
-    sinks = enumerate(now.model.sink_tables)
-    found = [_is_there(now, sink, f"sink.{n}") & _holds(now, sink, f"sink.{n}") for n, sink in sinks]
+    sinks = now.model.sink_tables
+    values = {} if all(sink.when is None for sink in sinks) else rule_values(now)
+    at = [f"sink.{number}" for number in range(len(sinks))]
+    found = [_is_there(now, *sink) & _holds(now, *sink, values) for sink in zip(sinks, at, strict=True)]
     return np.asarray(np.any(found, axis=0))
 
 
@@ -75,11 +77,11 @@ def _is_there(now: Moment, sink: SinkTable, at: str) -> BoolArray:
     return np.asarray(distance <= (radius if sink.gap is None else sink.gap))
 
 
-def _holds(now: Moment, sink: SinkTable, at: str) -> BoolArray:
-    """Mask (n,) of the bodies for which the rule of a sink holds, all if it has none."""
+def _holds(now: Moment, sink: SinkTable, at: str, values: Names) -> BoolArray:
+    """Mask (n,) of the bodies for which the rule of a sink holds with these ``values``, all if it has none."""
     if sink.when is None:
         return np.ones(len(now.system.bodies), dtype=bool)
-    found = rule(sink.when, f"{at}.when", now.model.dimension)(rule_values(now))
+    found = rule(sink.when, f"{at}.when", now.model.dimension)(values)
     lost = np.flatnonzero(~now.system.prescribed & ~(np.abs(found) <= LARGEST))
     if lost.size:
         value, name = found[lost[0]], now.system.surfaces[lost[0]]

@@ -11,7 +11,7 @@ def curves(found: Statistics) -> dict[str, dict[str, FloatArray]]:
     """Columns (n,) of each table by the names in ``statistics.json``; standard errors beside their means."""
     axes, layers = "xyz"[: found.samples.dimension], found.profile
     velocities = {"": layers.velocity, "fluctuation_": layers.fluctuations}
-    velocities |= {name: mean for name, mean in (("fluid_", layers.fluid), ("mixture_", layers.mixture)) if mean}
+    velocities |= {"fluid_": layers.fluid, "mixture_": layers.mixture} if layers.fluid and layers.mixture else {}
     profile = {"place": layers.place} | _columns("fraction", layers.fraction)
     for name, mean in velocities.items():
         for column, axis in enumerate(axes):

@@ -49,9 +49,8 @@ def _velocity(moved: FloatArray, volume: FloatArray) -> Mean:
     """Velocity (l, d) of what has a ``volume`` (s, l), the mean over all of it, by the integral ``moved`` (s, l, d) of
     its velocity; not a number where there is nothing [length/time]."""
     whole = volume.mean(axis=0)[:, None]
-    velocity = np.divide(moved.mean(axis=0), whole, out=np.full(moved.shape[1:], np.nan), where=whole > 0.0)
-    off = mean(moved - velocity * volume[..., None]).error
-    return Mean(velocity, np.divide(off, whole, out=np.full_like(velocity, np.nan), where=whole > 0.0))
+    velocity = _over(moved.mean(axis=0), whole)
+    return Mean(velocity, _over(mean(moved - velocity * volume[..., None]).error, whole))
 
 
 def _fluctuations(velocity: FloatArray, inside: FloatArray) -> Mean:
@@ -59,11 +58,15 @@ def _fluctuations(velocity: FloatArray, inside: FloatArray) -> Mean:
     volume ``inside`` (s, l, n); not a number where there is nothing [length/time]."""
     volume, near_zero = inside.sum(axis=2), velocity - velocity.mean(axis=(0, 1))
     first, second = (np.einsum("sln,snd->sld", inside, near_zero**power) for power in (1, 2))
-    average = _velocity(first, volume).value
+    average = _over(first.mean(axis=0), volume.mean(axis=0)[:, None])
     variance = _velocity(second - 2.0 * average * first + average**2 * volume[..., None], volume)
     deviation = np.sqrt(np.maximum(variance.value, 0.0))
-    unknown = np.full_like(deviation, np.nan)
-    return Mean(deviation, np.divide(0.5 * variance.error, deviation, out=unknown, where=deviation > 0.0))
+    return Mean(deviation, _over(0.5 * variance.error, deviation))
+
+
+def _over(values: FloatArray, whole: FloatArray) -> FloatArray:
+    """Values (l, d) over a ``whole``, not a number where that is nothing."""
+    return np.divide(values, whole, out=np.full_like(values, np.nan), where=whole > 0.0)
 
 
 def _solid_layers(samples: Samples, edges: FloatArray, axis: int) -> tuple[FloatArray, FloatArray]:

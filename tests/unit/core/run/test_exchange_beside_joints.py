@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from scenes import dry_tables, wet_tables
+from two_parts import run_in_two_parts
 
 from rigidfluid.api import Simulation, scene_from_dict
 from rigidfluid.errors import SceneError
@@ -139,14 +140,8 @@ def test_a_resumed_run_has_the_joints_of_the_earlier_one(case: str, tmp_path: Pa
     source["region"] = {"type": "box", "lower": [0.02, 0.02], "upper": [0.3, 0.2]}
     sink = {"when": "age > 0.12 and t > 0.22"}
     scene = scene_from_dict(tables_of(case, source=[source], sink=[sink], output={"every": 0.15}, step=0.01))
-    whole, run = Simulation(scene), Simulation(scene, tmp_path)
+    whole, resumed = Simulation(scene), run_in_two_parts(scene, tmp_path, 0.3)
     whole.go()
-    run.go(0.3)
-    run.close()
-    resumed = Simulation(scene, tmp_path, resume=True)
-    resumed.go()
-    resumed.finish("complete")
-    resumed.close()
     assert whole.history.exchanges["body"].tolist() == ["grain0", "other", "grain0", "grain1", "grain1"]
     for table in ("bodies", "joints", "energy", "exchanges"):
         for column, values in whole.history.table(table).items():

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from scenes import dry_tables
+from two_parts import run_in_two_parts
 
 from rigidfluid.api import Simulation, scene_from_dict
 from rigidfluid.core.case.moment import Moment
@@ -55,13 +56,8 @@ def test_ages_go_on_after_resuming(tmp_path: Path) -> None:
     scene = scene_from_dict(
         dry_tables(POST, source=[SOURCE], sink=[{"when": "age > 0.255"}], output={"every": 0.1}, end=0.7)
     )
-    whole, run = Simulation(scene), Simulation(scene, tmp_path)
+    whole, resumed = Simulation(scene), run_in_two_parts(scene, tmp_path, 0.3)
     whole.go()
-    run.go(0.3)
-    run.close()
-    resumed = Simulation(scene, tmp_path, resume=True)
-    resumed.go()
-    resumed.close()
     assert left(resumed) == left(whole)
     assert list(left(whole)) == ["grain0", "grain1", "grain2"]
 
