@@ -51,6 +51,7 @@ def moved_after(scene: Scene, settled: float, time: float) -> tuple[float, float
     return float(np.abs(state.pose.position - place).max()) / HEIGHT, float(np.abs(state.twist.velocity).max())
 
 
+@pytest.mark.long
 def test_three_bricks_stay_on_each_other() -> None:
     moved, speed = moved_after(brick_wall(0.3, (2, 1)), 0.2, 0.1)
     assert moved < 1e-3
@@ -138,7 +139,7 @@ def cube_on_cube(
     return Simulation(scene, None, False)
 
 
-@pytest.mark.parametrize("stepping", ["substeps", "implicit"])
+@pytest.mark.parametrize("stepping", [pytest.param("substeps", marks=pytest.mark.long), "implicit"])
 def test_a_cube_that_tumbles_on_a_cube_keeps_its_energy(stepping: str, tmp_path: Path) -> None:
     """Edges of both pass each other, and cease to."""
     law = {"law": "normal", "epsilon": "auto", "stepping": stepping}

@@ -47,7 +47,10 @@ def assert_keeps_its_account(history: History) -> None:
     assert history.summary["energy"]["largest_creation"] < ALLOWED * abs(energy["contact"][0])
 
 
-@pytest.mark.parametrize(("dimension", "model"), [(2, "navier-stokes"), (3, "navier-stokes"), (2, "stokes")])
+@pytest.mark.parametrize(
+    ("dimension", "model"),
+    [(2, "navier-stokes"), pytest.param(3, "navier-stokes", marks=pytest.mark.long), (2, "stokes")],
+)
 def test_they_approach_and_turn_and_no_energy_is_made(dimension: int, model: str) -> None:
     history = attracted(dimension, 4e-3, model)
     assert_keeps_its_account(history)

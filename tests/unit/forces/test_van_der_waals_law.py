@@ -89,7 +89,7 @@ def test_a_pair_that_attracts_keeps_its_energy(stepping: str, step: float, dimen
     assert run.state.twist.velocity[0, 0] == pytest.approx(-0.5, rel=1e-3)
 
 
-@pytest.mark.parametrize("stepping", ["substeps", "implicit"])
+@pytest.mark.parametrize("stepping", ["substeps", pytest.param("implicit", marks=pytest.mark.long)])
 def test_a_slow_pair_with_a_damper_is_caught(stepping: str) -> None:
     caught, free = (pair(stepping, 4e-3, 2, speed=0.1, end=0.8, restitution=restitution) for restitution in (0.3, 1.0))
     for run in (caught, free):

@@ -29,13 +29,17 @@ def channel_error(name, divisions, dimension=2):
     return float(np.linalg.norm(velocity - np.outer(exact, np.eye(dimension)[0])) / np.linalg.norm(exact))
 
 
-@pytest.mark.parametrize("name", ["carreau", "cross", "power_law"])
+@pytest.mark.parametrize(
+    "name", ["carreau", *(pytest.param(name, marks=pytest.mark.long) for name in ("cross", "power_law"))]
+)
 def test_a_channels_flow_converges_with_the_third_order(name):
     errors = [channel_error(name, divisions) for divisions in (4, 8, 16)]
     assert np.all(np.log2(np.divide(errors[:-1], errors[1:])) > 2.8), errors
 
 
-@pytest.mark.parametrize("name", ["thickening", "bingham", "herschel_bulkley"])
+@pytest.mark.parametrize(
+    "name", ["bingham", *(pytest.param(name, marks=pytest.mark.long) for name in ("thickening", "herschel_bulkley"))]
+)
 def test_a_channels_flow_converges_where_the_viscosity_varies_in_a_thin_layer(name):
     """Where γ̇ is small it does so faster than the coarser mesh resolves."""
     errors = [channel_error(name, divisions) for divisions in (4, 16)]

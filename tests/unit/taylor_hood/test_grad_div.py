@@ -51,7 +51,7 @@ def test_it_acts_above_a_cell_reynolds_number_of_two(dimension):
     assert not resolved.any()
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", [2, pytest.param(3, marks=pytest.mark.long)])
 def test_the_compiled_matrix_is_that_of_the_forms(dimension):
     """The naive twin: scikit-fem's own assembly of inertia, convection, viscosity and grad-div."""
     numbering, points = grid(dimension, 2 if dimension == 2 else 1)

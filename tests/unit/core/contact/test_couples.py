@@ -24,7 +24,7 @@ def spin(history: History, dimension: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("stepping", "within"), [("substeps", 1e-3), ("implicit", 2e-4)])
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", [pytest.param(2, marks=pytest.mark.long), 3])
 def test_a_ball_that_turns_at_a_wall_is_braked_by_force_and_couple(
     dimension: int, stepping: str, within: float
 ) -> None:

@@ -37,7 +37,12 @@ def turning(model: str = "navier-stokes", stepping: str = "substeps", sliding: b
 
 
 @pytest.mark.parametrize(
-    ("model", "stepping"), [("navier-stokes", "substeps"), ("navier-stokes", "implicit"), ("stokes", "substeps")]
+    ("model", "stepping"),
+    [
+        ("navier-stokes", "substeps"),
+        pytest.param("navier-stokes", "implicit", marks=pytest.mark.long),
+        ("stokes", "substeps"),
+    ],
 )
 def test_no_energy_is_made_or_lost(model: str, stepping: str) -> None:
     """Of what was put in, after the first step, which sets the fluid in motion at once."""
@@ -49,6 +54,7 @@ def test_no_energy_is_made_or_lost(model: str, stepping: str) -> None:
     assert energy["contact_loss"][-1] > 0.05 * put_in
 
 
+@pytest.mark.long
 def test_the_film_brakes_the_disk_and_its_table_tells_the_force() -> None:
     braked, free = turning(), turning(sliding=False)
     assert braked.bodies["w"][-1] < 0.95 * free.bodies["w"][-1]

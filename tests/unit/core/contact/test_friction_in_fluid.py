@@ -45,7 +45,8 @@ def held(step, stiffness=SPRING["tangential_stiffness"], stepping="substeps"):
     return run_to_end(disk_on_slope(0.1, step, tangential_stiffness=stiffness, stepping=stepping))
 
 
-@pytest.mark.parametrize("step", [4e-3, pytest.param(1e-3, marks=[pytest.mark.long, pytest.mark.nightly])])
+@pytest.mark.long
+@pytest.mark.parametrize("step", [4e-3, pytest.param(1e-3, marks=pytest.mark.nightly)])
 def test_a_disk_that_hits_obliquely_loses_by_friction_and_film_and_makes_no_energy(step):
     """Film, roughness, restitution and friction act in one impact. Of the change of speed across the wall the film
     takes a part, which does not press the surfaces together; μ times the rest is lost along the wall."""
@@ -64,7 +65,7 @@ def test_a_disk_that_hits_obliquely_loses_by_friction_and_film_and_makes_no_ener
     assert 0.7 < -change[0] / (0.2 * (2.0 + ended[0.2][1])) < 1.0
 
 
-@pytest.mark.parametrize("step", [4e-3, 2e-3])
+@pytest.mark.parametrize("step", [4e-3, pytest.param(2e-3, marks=pytest.mark.long)])
 def test_no_energy_is_made(step):
     ledger = held(step).ledger
     assert abs(ledger.residual) < 5e-3 * abs(ledger.gravity)

@@ -123,7 +123,9 @@ def test_friction_is_refused_where_it_would_count_twice_or_be_zero(declared, fie
     assert caught.value.subject == f"contact.{field}"
 
 
-@pytest.mark.parametrize("keys", [{}, {"stepping": "implicit"}], ids=["substeps", "implicit"])
+@pytest.mark.parametrize(
+    "keys", [{}, pytest.param({"stepping": "implicit"}, marks=pytest.mark.long)], ids=["substeps", "implicit"]
+)
 @pytest.mark.parametrize("law", [LAWS[0], *(pytest.param(law, marks=pytest.mark.long) for law in LAWS[1:])])
 def test_rolling_and_twisting_are_resisted_by_any_law(law, keys):
     """A ball at rest on the floor rolls and spins, slowed by μ_r R F_n and μ_o R F_n."""

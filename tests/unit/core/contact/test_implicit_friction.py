@@ -47,7 +47,8 @@ def assert_slides(middle, end, steepness, time):
     assert gained == pytest.approx(time * acceleration, rel=0.01)
 
 
-@pytest.mark.parametrize("step", [4e-3, pytest.param(5e-4, marks=[pytest.mark.long, pytest.mark.nightly])])
+@pytest.mark.long
+@pytest.mark.parametrize("step", [4e-3, pytest.param(5e-4, marks=pytest.mark.nightly)])
 def test_friction_holds_a_disk_just_below_its_angle(step):
     """It starts with relaxed springs, and slips until the excess of friction over its weight has stopped it."""
     state = run_to_end(disk_on_slope(0.99, 2.6, step))

@@ -76,6 +76,7 @@ def test_a_ball_rests_on_a_slope_below_that_of_rolling_friction_and_rolls_on_a_s
         assert_keeps_its_account(state, keys)
 
 
+@pytest.mark.long
 @IN_STEPS
 def test_a_spin_about_the_normal_stops_in_time(keys, step):
     """I dw/dt = -μ_o R m g, with I = .4 m R²."""

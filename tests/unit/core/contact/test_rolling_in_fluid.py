@@ -68,7 +68,7 @@ def assert_keeps_its_account(history: History) -> None:
 
 
 @pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("stepping", STEPPINGS)
+@pytest.mark.parametrize("stepping", ["substeps", pytest.param("implicit", marks=pytest.mark.long)])
 def test_a_disk_is_slowed_and_no_energy_is_made(stepping: str, law: str) -> None:
     """Its torque is that of the force along the floor and μ_r R F_n."""
     slowed, free = rolled(2, stepping, law=law), rolled(2, stepping, False, law)
@@ -90,7 +90,7 @@ def test_implicit_steps_take_as_much_as_substeps() -> None:
     assert one.energy["contact_loss"][-1] == pytest.approx(other.energy["contact_loss"][-1], rel=0.05)
 
 
-@pytest.mark.parametrize("stepping", STEPPINGS)
+@pytest.mark.parametrize("stepping", ["substeps", pytest.param("implicit", marks=pytest.mark.long)])
 def test_couples_reach_a_ball_in_3d(stepping: str) -> None:
     history = rolled(3, stepping, end=0.012)
     assert_keeps_its_account(history)

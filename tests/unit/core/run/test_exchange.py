@@ -118,7 +118,9 @@ def test_the_account_closes_in_a_fluid() -> None:
 
 
 @pytest.mark.parametrize(
-    ("contact", "third"), [(CONTACT, THIRD), (AUTO, FALLING)], ids=["free", "strength by the loads at an exchange"]
+    ("contact", "third"),
+    [(CONTACT, THIRD), pytest.param(AUTO, FALLING, marks=pytest.mark.long)],
+    ids=["free", "strength by the loads at an exchange"],
 )
 def test_a_resumed_run_has_the_bodies_of_the_earlier_one(
     tmp_path: Path, contact: dict[str, Any], third: dict[str, Any]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 import rigidfluid
 from rigidfluid.api import scene_from_dict
@@ -56,6 +57,7 @@ def test_bodies_enter_and_leave_across_a_seam_as_away_from_it() -> None:
         assert abs(history.energy["residual"][-1]) < 1e-3 * history.energy["boundary"][-1]
 
 
+@pytest.mark.long
 def test_it_is_resumed_to_the_last_bit(tmp_path: Path) -> None:
     whole = rigidfluid.run(stream(0.0), tmp_path / "whole")
     rigidfluid.run(stream(0.0, end=0.6), tmp_path / "parts")

@@ -134,7 +134,7 @@ def test_a_rotor_on_a_body_that_is_driven_follows_the_caller() -> None:
     assert run.state.ledger.control == pytest.approx(alone.state.ledger.control, abs=1e-12)
 
 
-@pytest.mark.parametrize("case", ["pendulum", "all"])
+@pytest.mark.parametrize("case", ["pendulum", pytest.param("all", marks=pytest.mark.long)])
 def test_a_resumed_run_has_the_joints_of_the_earlier_one(case: str, tmp_path: Path) -> None:
     source = {"name": "grain", "shape": [{"type": "sphere", "radius": 0.03}], "density": 2.0, "times": [0.1, 0.25]}
     source["region"] = {"type": "box", "lower": [0.02, 0.02], "upper": [0.3, 0.2]}
@@ -199,7 +199,7 @@ def test_a_window_keeps_its_bodies() -> None:
         run.add(GUEST)
 
 
-@pytest.mark.parametrize("case", ["pendulum", "spring", "strokes"])
+@pytest.mark.parametrize("case", ["pendulum", "spring", pytest.param("strokes", marks=pytest.mark.long)])
 def test_nothing_jumps_in_a_fluid(case: str) -> None:
     """In the short steps after an exchange velocities hardly change, and places as they say; what the fluid and joints
     do not account for is as little as without exchanges."""

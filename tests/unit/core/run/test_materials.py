@@ -83,7 +83,9 @@ def test_a_body_falls_faster_in_what_thins():
     assert speeds[1] > 1.05 * speeds[0]
 
 
-@pytest.mark.parametrize("material", [CARREAU, BINGHAM], ids=["carreau", "bingham"])
+@pytest.mark.parametrize(
+    "material", [pytest.param(CARREAU, marks=pytest.mark.long), BINGHAM], ids=["carreau", "bingham"]
+)
 def test_the_viscosity_is_in_fields_files_and_report(material, tmp_path):
     it = Simulation(scene_from_dict(tables(material, output={"every": 0.04})), tmp_path)
     it.go(0.04)

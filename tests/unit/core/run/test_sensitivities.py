@@ -125,7 +125,13 @@ def groups(row: dict[str, np.ndarray], dimension: int) -> dict[str, np.ndarray]:
     }
 
 
-@pytest.mark.parametrize(("tables", "key"), CASES.values(), ids=CASES)
+@pytest.mark.parametrize(
+    ("tables", "key"),
+    [
+        pytest.param(*case, id=name, marks=pytest.mark.long if name == "three dimensions" else ())
+        for name, case in CASES.items()
+    ],
+)
 def test_derivatives_are_differences_of_whole_runs(tables: dict[str, Any], key: str) -> None:
     steps = FEW if tables["scene"]["dimension"] == 3 else STEPS
     assert_differences(tables, key, steps, 1e-6)

@@ -211,6 +211,7 @@ def test_a_backend_that_cannot_cut_its_state_is_resumed_by_as_many_ranks(tmp_pat
         refused_by_all(count, rf"found a run of 2 processes; allowed is a run of {count}", tmp_path, resume=True)
 
 
+@pytest.mark.long
 def test_a_kill_between_checkpoints_of_fewer_ranks_than_before_loses_nothing(tmp_path):
     expected, *_ = uninterrupted(2)
     shared(3, tmp_path, end=0.02)

@@ -57,7 +57,7 @@ def test_a_run_is_resumed_to_the_last_bit(tmp_path: Path) -> None:
     assert history.summary["reynolds"] is None
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", [2, pytest.param(3, marks=pytest.mark.long)])
 def test_check_and_report_tell_of_the_fluid_alone(dimension: int, tmp_path: Path) -> None:
     found = check(cavity(dimension, time={"end": 0.01, "step": 0.01, "tolerance": 0.01}))
     assert found.bodies == found.pairs == ()

@@ -69,7 +69,11 @@ def test_few_balls_in_a_box_are_shaken_until_they_fit() -> None:
 
 @pytest.mark.parametrize(
     ("dimension", "shape", "fraction"),
-    [(2, ELLIPSE, 0.65), (2, SQUARE, 0.4), (3, ELLIPSOID | {"semi_axes": [0.3, 0.2, 0.15]}, 0.3)],
+    [
+        pytest.param(2, ELLIPSE, 0.65, marks=pytest.mark.long),
+        (2, SQUARE, 0.4),
+        (3, ELLIPSOID | {"semi_axes": [0.3, 0.2, 0.15]}, 0.3),
+    ],
     ids=["ellipses", "squares", "ellipsoids"],
 )
 def test_the_naive_detector_finds_no_smaller_gap(dimension: int, shape: dict[str, Any], fraction: float) -> None:
@@ -111,7 +115,7 @@ def test_a_swarm_avoids_listed_bodies_and_the_swarm_before_it() -> None:
     np.testing.assert_array_equal(start(scene).position[0], [0.5, 0.5])
 
 
-@pytest.mark.parametrize("shape", [DISK, ELLIPSE], ids=["disks", "ellipses"])
+@pytest.mark.parametrize("shape", [DISK, pytest.param(ELLIPSE, marks=pytest.mark.long)], ids=["disks", "ellipses"])
 def test_swarms_keep_clear_of_round_obstacles(shape: dict[str, Any]) -> None:
     pin = {"type": "sphere", "radius": 0.2, "position": [0.5, 0.5]}
     channel = {"type": "channel", "lower": [0.0, 0.0], "upper": [1.0, 1.0], "obstacle": [pin]}

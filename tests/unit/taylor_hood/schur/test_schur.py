@@ -148,7 +148,9 @@ def test_auto_takes_blocks_for_large_meshes_in_3d(monkeypatch, solver, most, tak
     assert bool(made) == bool(taken)
 
 
-@pytest.mark.parametrize(("model", "by_blocks"), [("navier-stokes", False), ("stokes", True)])
+@pytest.mark.parametrize(
+    ("model", "by_blocks"), [pytest.param("navier-stokes", False, marks=pytest.mark.long), ("stokes", True)]
+)
 def test_a_steady_start_with_convection_is_solved_by_factors(monkeypatch, model, by_blocks):
     """Without inertia blocks do not master convection."""
     made, make = [], LaggedSchur.make
