@@ -55,8 +55,8 @@ def show_rows(rows: Iterable[DataclassInstance], file: Path | None) -> None:
         sys.exit(2)
 
 
-def _cell(value: float | None) -> str:
-    """A count, or a number to four digits."""
+def _cell(value: float | str | None) -> str:
+    """A count, a name, or a number to four digits."""
     if value is None:
         return "none"
-    return str(value) if isinstance(value, int) else f"{value:.4g}"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
