@@ -132,8 +132,10 @@ def measured(
         presence(samples),
         mean(mean_gap(samples.gap)[samples.count > 0]),
         gap_distribution(samples),
-        mean(samples.by_state(mean_velocity, samples.velocity)),
-        mean(samples.by_state(partial(velocity_fluctuations, shear=samples.shear), samples.velocity, samples.position)),
+        mean(samples.map_states(mean_velocity, samples.velocity)),
+        mean(
+            samples.map_states(partial(velocity_fluctuations, shear=samples.shear), samples.velocity, samples.position)
+        ),
         pair_distribution(samples),
         structure_factor(samples),
         diffusion(samples),

@@ -40,7 +40,7 @@ def pair_distribution(samples: Samples) -> PairDistribution:
         expected = 0.5 * len(position) * (len(position) - 1) * shares
         return np.divide(_counts(samples, position, edges), expected, out=np.zeros(BINS), where=expected > 0.0)
 
-    return PairDistribution(0.5 * (edges[1:] + edges[:-1]), mean(samples.by_state(ratio, samples.position, least=2)))
+    return PairDistribution(0.5 * (edges[1:] + edges[:-1]), mean(samples.map_states(ratio, samples.position, least=2)))
 
 
 def _counts(samples: Samples, position: FloatArray, edges: FloatArray) -> FloatArray:

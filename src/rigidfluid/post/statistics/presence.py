@@ -36,4 +36,6 @@ def presence(samples: Samples) -> Presence:
     share = present.mean(axis=0)
     volume = (share * samples.body_volume).sum() / samples.volume
     off = (present - share) @ samples.body_volume / samples.volume
-    return Presence(mean(count.astype(float)), int(count.min()), int(count.max()), Mean(np.asarray(volume), mean(off).error))
+    return Presence(
+        mean(count.astype(float)), int(count.min()), int(count.max()), Mean(np.asarray(volume), mean(off).error)
+    )

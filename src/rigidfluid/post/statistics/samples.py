@@ -69,7 +69,7 @@ class Samples:
         """Number of bodies in each state (s,)."""
         return np.asarray(np.count_nonzero(self.present, axis=1))
 
-    def by_state(self, figure: Callable[..., ArrayLike], *values: FloatArray, least: int = 1) -> FloatArray:
+    def map_states(self, figure: Callable[..., ArrayLike], *values: FloatArray, least: int = 1) -> FloatArray:
         """A ``figure`` of the bodies in each state that has at ``least`` so many (t, …), by their rows (b, …) of the
         ``values`` (s, n, …)."""
         states = zip(self.present, *values, strict=True)

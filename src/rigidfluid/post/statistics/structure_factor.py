@@ -37,7 +37,7 @@ def structure_factor(samples: Samples) -> StructureFactor:
     band = np.rint(np.linalg.norm(waves, axis=1) / unit).astype(int)
     waves, band = waves[band <= WAVES], band[band <= WAVES]
     count = np.bincount(band)
-    sums = samples.by_state(lambda position: np.bincount(band, _power(waves, position)), samples.position)
+    sums = samples.map_states(lambda position: np.bincount(band, _power(waves, position)), samples.position)
     kept = np.flatnonzero(count)
     return StructureFactor(unit * kept, mean(sums[:, kept] / count[kept]))
 

@@ -281,8 +281,8 @@ def test_of_bodies_that_all_stay_they_are_the_means_of_whole_arrays() -> None:
         (diffusion(samples).displacement, square),
         (diffusion(samples).coefficient, 0.5 * (away @ square[10:] / (away @ away))),
         (gap_distribution(samples).gap.value, gap.mean(axis=0)),
-        (samples.by_state(partial(np.mean, axis=0), velocity), velocity.mean(axis=1)),
-        (samples.by_state(partial(np.std, axis=0), velocity), velocity.std(axis=1)),
+        (samples.map_states(partial(np.mean, axis=0), velocity), velocity.mean(axis=1)),
+        (samples.map_states(partial(np.std, axis=0), velocity), velocity.std(axis=1)),
         (presence(samples).mean.to_list(), [11.0, 0.0]),
         (presence(samples).fraction.to_list(), [samples.body_volume.sum(), 0.0]),
     ):
