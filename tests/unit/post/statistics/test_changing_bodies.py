@@ -304,6 +304,24 @@ def test_states_without_bodies_count_as_empty_and_have_no_figures_of_bodies() ->
     np.testing.assert_allclose(profile(half, 0, None).velocity.value, profile(late, 0, None).velocity.value)
 
 
+def test_states_with_one_body_have_its_figures_and_no_pairs() -> None:
+    """One body in half of the states, two near each other in the others."""
+    position = np.tile([[0.5, 0.5], [0.5, 0.7]], (40, 1, 1))
+    position[:20, 1] = np.nan
+    gap = np.where(np.isfinite(position[..., 0]), np.arange(40.0)[:, None], np.inf)
+    samples, two = made(position, gap=gap), made(position[20:])
+    np.testing.assert_allclose(gap_distribution(samples).gap.value, 19.5)
+    pairs = pair_distribution(two).value.value
+    assert pairs.max() > 1.0
+    np.testing.assert_array_equal(pair_distribution(samples).value.value, pairs)
+
+
+def test_a_single_lag_has_no_slope() -> None:
+    found = diffusion(made(np.random.default_rng(3).random((2, 5, 2))))
+    assert np.isfinite(found.displacement).all()
+    assert np.isnan(found.coefficient).all()
+
+
 def test_nobody_diffuses_over_lags_longer_than_two_bodies_are_there() -> None:
     """Bodies that are there for four states each, one after the other, two at a time."""
     position = np.full((24, 12, 2), np.nan)
