@@ -35,6 +35,7 @@ PICTURES = {
     "falling_ellipsoid": Shown("vorticity", (0.2, 0.4, 0.6, 0.8), (-0.5, -0.5, 0.5, 1.8)),
     "falling_sphere": Shown("space", (1.0,)),
     "fast_disk": Shown("vorticity", (0.1, 0.15, 0.2, 0.275)),
+    "fed_channel": Shown("speed", (0.75, 1.5, 2.5)),
     "hinged_pair": Shown("vorticity", (0.16, 0.3, 0.44, 0.6)),
     "hot_cavity": Shown("scalar", (0.03, 0.3)),
     "hundred_disks": Shown("speed", (0.5, 1.5, 3.0)),

@@ -58,7 +58,7 @@ def profiles(found: list[Statistics]) -> Figure:
             label=label,
         )  # fmt: skip
     place, share = DISK_SHARE.T
-    left.plot(place, share * found[0].samples.fraction / _whole(), "k--", label="Chen et al. 2012, for 16.9 %")
+    left.plot(place, share * found[0].presence.fraction.value / _whole(), "k--", label="Chen et al. 2012, for 16.9 %")
     left.set(xlabel="height", ylabel="share of the disks", ylim=(0.0, None))
     right.plot(place, 4.0 * place * (1.0 - place), "k:", label="without disks")
     right.set(xlabel="height", ylabel="velocity of the disks")
@@ -94,7 +94,7 @@ def _whole() -> float:
 
 def _published(found: Statistics) -> np.ndarray:
     """Published share at the middles of the layers, so that its mean is that of the disks."""
-    return np.interp(found.profile.place, *DISK_SHARE.T) * found.samples.fraction / _whole()
+    return np.interp(found.profile.place, *DISK_SHARE.T) * found.presence.fraction.value / _whole()
 
 
 def _off(found: Statistics) -> str:
@@ -130,7 +130,7 @@ def _figures(run: Run, found: Statistics) -> Iterator[tuple[str, str]]:
     flux, total, x = run.history.driving["flux"], sum(stages.values()), run.history.bodies["x"]
     count = len(run.scene.body)
     way = (x[-count:] - x[:count]).mean() / run.scene.domain.upper[1]
-    yield "disks, share of the area", f"{count}, {found.samples.fraction:.4f}"
+    yield "disks, share of the area", f"{count}, {found.presence.fraction.value:.4f}"
     yield "time reached, mean way of the disks in heights", f"{END:g}, {way:.1f}"
     yield "mean velocity at the start, at the end", f"{flux[0]:.3f}, {flux[-1]:.3f}"
     yield "unknowns at the end", f"{summary['unknowns']:,}"

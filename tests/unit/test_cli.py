@@ -196,7 +196,7 @@ def test_run_ends_with_figures_and_files(tmp_path: Path) -> None:
     for text in (
         "smallest gap: 0.1",
         "position at the end: left_disk (0.32, 0.4995)",
-        "bodies.csv",
+        "out: bodies.csv, energy.csv, steps.csv, fields.pvd, state.h5, summary.json, and 13 tables without rows\n",
     ):
         assert text in result.stdout
     assert "Reynolds" not in result.stdout
@@ -218,6 +218,7 @@ def test_run_with_a_fluid_ends_with_its_reynolds_numbers(monkeypatch: pytest.Mon
     parts = ("created", "lost", "unaccounted", "path_friction", "grad_div", "put_in")
     shares = dict.fromkeys((*parts, *FLOWS), 0.0) | {"unaccounted": -1e-9, "at_hand": 0.0}
     history.summary = figures | {"files": [tmp_path / "bodies.csv"], "energy": shares | {"warnings": []}}
+    (tmp_path / "bodies.csv").write_text("time\n0.0\n")
     monkeypatch.setattr(rigidfluid.core.run.run, "simulate", lambda *_, finished, **__: finished(history))
     text = rigidfluid_command("run", SCENE, "--out", tmp_path).stdout
     assert "highest Reynolds number: 17.46 with the density of the solid, 13.97 with that of the fluid" in text

@@ -102,7 +102,18 @@ def print_end(history: History, folder: Path) -> None:
         tell(f"{grade}: {text}", _STYLES.get(grade, ""))
     if summary["unknowns"]:
         tell(_stage_costs(summary["wall_time_per_stage"], summary["wall_time"]))
-    tell(f"wrote to {folder}: {', '.join(Path(file).name for file in summary['files'])}")
+    names = [Path(file).name for file in summary["files"]]
+    filled = [name for name in names if _has_rows(folder / name)]
+    empty = f", and {len(names) - len(filled)} tables without rows" if len(filled) < len(names) else ""
+    tell(f"wrote to {folder}: {', '.join(filled)}{empty}")
+
+
+def _has_rows(path: Path) -> bool:
+    """Tell whether a table has more than its header, or the file is none."""
+    if path.suffix != ".csv":
+        return True
+    with path.open(encoding="utf-8") as lines:
+        return len(list(islice(lines, 2))) > 1
 
 
 def _print_positions(position: Mapping[str, Sequence[float]]) -> None:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import tomllib
 from typing import Any
 
 import pytest
+from page_code import page_blocks
+from paths import ROOT
 from scenes import dry_tables, wet_tables
 
 from rigidfluid.api import scene_from_dict
@@ -36,6 +39,15 @@ def test_bodies_of_a_source_are_judged_as_listed_ones(make: Any) -> None:
     listed = [one for one in findings(make, POST, *grains) if one.question not in AT_START]
     assert entering == listed
     assert {name for one in entering for name in one.subject} >= {"grain0", "pebble0"}
+
+
+@pytest.mark.parametrize("page", ["seed-bodies", "enter-and-leave"])
+def test_scenes_of_the_how_to_have_no_warnings(page: str) -> None:
+    blocks = page_blocks(ROOT / "docs" / "howto" / f"{page}.md")
+    (text,) = (
+        block.text for block in blocks if block.file and block.file.endswith(".toml") and "[scene]" in block.text
+    )
+    assert [one.text for one in check(scene_from_dict(tomllib.loads(text))).findings if one.grade == "warning"] == []
 
 
 def test_who_enters_is_told() -> None:

@@ -58,7 +58,9 @@ def pressure_drop(table: PeriodicTable, place: Place) -> BoundaryPressure | None
     """Pressure on a periodic surface less the pressure on the opposite one [force/length^(d-1)]; None if not given."""
     if table.pressure_drop is None:
         return None
-    return BoundaryPressure(Expression(table.pressure_drop, f"{place.at}.pressure_drop", place.dimension))
+    return BoundaryPressure(
+        Expression(table.pressure_drop, f"{place.at}.pressure_drop", 0, f" on {place.piece.name!r}")
+    )
 
 
 @dataclass(frozen=True)

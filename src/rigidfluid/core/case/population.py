@@ -6,6 +6,7 @@ import re
 from collections.abc import Container, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ from rigidfluid.core.scene.body_tables import BodyTable
 from rigidfluid.core.scene.validation import read_table
 from rigidfluid.core.setup.assemble import assemble
 from rigidfluid.core.setup.changeable import has_links, staying_bodies
-from rigidfluid.core.setup.geometry_checks import check_places
+from rigidfluid.core.setup.geometry_checks import check_places, overlap
 from rigidfluid.core.setup.model import Model
 from rigidfluid.core.setup.rigid_body import RigidBody
 from rigidfluid.core.setup.shape_checks import check_shapes
@@ -121,7 +122,17 @@ def assemble_ever(model: Model) -> System:
 
 def _check_places(model: Model, pose: Pose) -> None:
     check_shapes(model.shapes)
-    check_places(model, pose)
+    check_places(model, pose, refusal=partial(_refusal, model))
+
+
+def _refusal(model: Model, a: int, b: int, depth: float) -> SceneError:
+    """Error of two surfaces that overlap so deep: of two single bodies that of the later one, which has entered, and of
+    one at an open end how it may leave [length]."""
+    if b < len(model.bodies):
+        return overlap(model, b, a, depth)
+    name, held = model.surfaces[b], b < len(model.all_bodies) or b in (wall.surface for wall in model.walls)
+    remedy = "" if held else f"Nothing holds it there: let it leave before, by a [[sink]] with on = {name!r}."
+    return overlap(model, a, b, depth, remedy)
 
 
 def require_one_process(backend: FluidBackend) -> None:
@@ -159,6 +170,8 @@ def refuse_staying(model: Model, name: str) -> None:
 def refuse_known_name(population: Population, model: Model, name: str) -> None:
     """Raise SceneError for the name of a body that enters if another one has or had it, or a source will give it:
     results go by names."""
+    if name in (joint.name for joint in model.joints):
+        raise SceneError("body.name", f"{name!r}, the name of a joint", "a name that no joint has", "Change it.")
     known = {*model.surfaces, *population.left}
     if name in known or any(source.gives(name) for source in model.source_tables):
         raise SceneError(

@@ -6,17 +6,26 @@ from functools import cache
 
 import numpy as np
 
-from rigidfluid.core.case.moment import Moment
+from rigidfluid.core.case.moment import Moment, SinkRegions
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.nested.expressions import Names, Operation, formula_in
 from rigidfluid.core.scene.exchange_tables import SinkTable
 from rigidfluid.core.scene.validation import LARGEST
-from rigidfluid.core.seeding.regions import region_of
+from rigidfluid.core.seeding.regions import Region, region_of
 from rigidfluid.core.setup.changeable import staying_bodies
+from rigidfluid.core.setup.model import Model
 from rigidfluid.errors import SceneError
 
 _SINGLE = ("speed", "age", "t", "radius", "volume", "mass")
 """Names in rules that are not components of a vector."""
+
+
+def sink_regions(model: Model) -> SinkRegions:
+    """Regions of the sinks of a model, None for one without; raises SceneError for one that is wrong."""
+    return tuple(
+        None if sink.region is None else region_of(sink.region, model.domain, f"sink.{number}.region", model.registry)
+        for number, sink in enumerate(model.sink_tables)
+    )
 
 
 def leaving_bodies(now: Moment) -> list[int]:
@@ -61,15 +70,18 @@ def _come_to_a_sink(now: Moment) -> BoolArray:
     sinks = now.model.sink_tables
     values = {} if all(sink.when is None for sink in sinks) else rule_values(now)
     at = [f"sink.{number}" for number in range(len(sinks))]
-    found = [_is_there(now, *sink) & _holds(now, *sink, values) for sink in zip(sinks, at, strict=True)]
+    found = [
+        _is_there(now, sink, region) & _holds(now, sink, key, values)
+        for sink, region, key in zip(sinks, now.sink_regions, at, strict=True)
+    ]
     return np.asarray(np.any(found, axis=0))
 
 
-def _is_there(now: Moment, sink: SinkTable, at: str) -> BoolArray:
+def _is_there(now: Moment, sink: SinkTable, region: Region | None) -> BoolArray:
     """Mask (n,) of the bodies in the place of a sink, all if it has none."""
     centre, domain = _centres(now), now.model.domain
-    if sink.region is not None:
-        return region_of(sink.region, domain, f"{at}.region", now.model.registry).contains(centre)
+    if region is not None:
+        return region.contains(centre)
     if sink.on is None:
         return np.ones(len(centre), dtype=bool)
     radius = now.system.bounding_radii

@@ -6,7 +6,9 @@ import json
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import fields, replace
+from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -65,6 +67,9 @@ from rigidfluid.core.setup.named_files import file_digests
 from rigidfluid.core.setup.prescribed import PrescribedMotion
 from rigidfluid.described import Described, first_names
 from rigidfluid.errors import ArgumentError, MeshError, OutputError, SceneError, StepError
+
+if TYPE_CHECKING:
+    from rigidfluid.core.case.moment import SinkRegions
 
 
 class Simulation(Described):
@@ -393,6 +398,13 @@ class Simulation(Described):
         """Let other runs write to the folder; a simulation that writes takes no step after that."""
         self.recorder.close()
 
+    @cached_property
+    def _sink_regions(self) -> SinkRegions:
+        """Regions of the scene's sinks, read once."""
+        from rigidfluid.core.case.sinks import sink_regions
+
+        return sink_regions(self.origin)
+
     def _exchange_due(self) -> None:
         """Let bodies enter and leave by the sources and sinks of the scene."""
         if not (self.model.source_tables or self.model.sink_tables):
@@ -402,7 +414,8 @@ class Simulation(Described):
         from rigidfluid.core.case.population_due import population_due
 
         try:
-            population = population_due(Moment(self.model, self.system, self.state, self.population, self.time))
+            now = Moment(self.model, self.system, self.state, self.population, self.time, self._sink_regions)
+            population = population_due(now)
             if population != self.population:
                 self._exchange(population)
         except (SceneError, MeshError) as error:

@@ -28,7 +28,7 @@ def stuck(system: System, state: State, rejection: StepRejected, time: float, sh
         f"{rejection.subject} at time {time:g}",
         f"{rejection.found}, even with a step of {shortest:g}{where}",
         rejection.allowed,
-        f"{remedy} What was computed until then is kept, and --resume goes on from the last output.",
+        f"{remedy} What was computed until then is kept.",
     )
     error.source = rejection.source
     return error

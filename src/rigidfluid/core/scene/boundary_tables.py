@@ -96,13 +96,16 @@ class PeriodicTable(_BoundaryTable):
     """
 
     type: Literal["periodic"] = Field(description="The condition")
-    pressure_drop: float | None = Field(
-        default=None, description="Excess of the pressure here over that on the opposite surface [force/length^(d-1)]"
+    pressure_drop: Formula | None = Field(
+        default=None,
+        description="Excess of the pressure here over that on the opposite surface: a number or an expression of t "
+        "only [force/length^(d-1)]",
     )
     flux: Formula | None = Field(
         default=None,
-        description="Instead of `pressure_drop`, the flux of fluid into the domain here, and out of it on the opposite "
-        "surface: a number or an expression of t only; the drop of pressure is found in each step [length^d/time]",
+        description="Instead of `pressure_drop`, the flux of fluid and bodies together into the domain here, and out "
+        "of it on the opposite surface: a number or an expression of t only; the drop of pressure is found in each "
+        "step [length^d/time]",
     )
 
     @property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from math import sqrt
 from typing import TYPE_CHECKING
@@ -48,12 +48,14 @@ def check_geometry(model: Model, pose: Pose) -> None:
         _check_resolution(model, mesh, contacts)
 
 
-def check_places(placed: Arrangement, pose: Pose, reach: float = 0.0) -> Contacts:
+def check_places(
+    placed: Arrangement, pose: Pose, reach: float = 0.0, refusal: Callable[[int, int, float], SceneError] | None = None
+) -> Contacts:
     """Contacts with gaps up to ``reach`` [length]; raises SceneError for bodies that overlap each other or a surface of
-    the domain, or are lost in it."""
+    the domain, or are lost in it: the ``refusal`` by both numbers and the depth, `overlap` if none is given."""
     _check_extent(placed)
     contacts = initial_contacts(placed, pose, reach)
-    raise_together(list(_overlaps(placed, contacts)))
+    raise_together(list(_overlaps(contacts, refusal or partial(overlap, placed))))
     return contacts
 
 
@@ -99,14 +101,15 @@ def _check_units(placed: Arrangement) -> None:
             raise SceneError(f"body.{number}", found, "bodies smaller than the domain", remedy)
 
 
-def _overlaps(placed: Arrangement, contacts: Contacts) -> Iterator[SceneError]:
+def _overlaps(contacts: Contacts, refusal: Callable[[int, int, float], SceneError]) -> Iterator[SceneError]:
     """An error for each pair of surfaces that overlap or touch, the deepest first; one for all that are too many."""
     deepest: dict[tuple[int, int], int] = {}
     for row in np.argsort(contacts.gap, kind="stable").tolist():
         if contacts.gap[row] <= 0.0:
             deepest.setdefault((int(contacts.body_a[row]), int(contacts.body_b[row])), row)
     rows = list(deepest.values())
-    yield from (_overlap(placed, contacts, row) for row in rows[:MOST_OVERLAPS_TOLD])
+    for row in rows[:MOST_OVERLAPS_TOLD]:
+        yield refusal(int(contacts.body_a[row]), int(contacts.body_b[row]), abs(float(contacts.gap[row])))
     if more := rows[MOST_OVERLAPS_TOLD:]:
         yield SceneError(
             "further overlaps",
@@ -116,8 +119,9 @@ def _overlaps(placed: Arrangement, contacts: Contacts) -> Iterator[SceneError]:
         )
 
 
-def _overlap(placed: Arrangement, contacts: Contacts, row: int) -> SceneError:
-    a, b, depth = int(contacts.body_a[row]), int(contacts.body_b[row]), abs(float(contacts.gap[row]))
+def overlap(placed: Arrangement, a: int, b: int, depth: float, remedy: str = "") -> SceneError:
+    """Error of body number ``a``, which reaches so deep into the body or surface number ``b`` [length]; its remedy is
+    to move it, if none is given."""
     body, kind = placed.all_bodies[a], "body" if b < len(placed.all_bodies) else "surface"
     other = f"{kind} {placed.surfaces[b]!r}" + (" of the domain" if kind == "surface" else "")
     where = f"overlaps {other} by {depth:.6g}" if depth > 0.0 else f"touches {other}"
@@ -126,9 +130,7 @@ def _overlap(placed: Arrangement, contacts: Contacts, row: int) -> SceneError:
         f"mechanism {whole.pop()!r}" if whole else f"body.{a}.position",
         f"{list(body.position)}, where body {body.name!r} {where}",
         "a place inside the domain and clear of all other surfaces",
-        f"Move it by more than {depth:.6g}, or make it smaller."
-        if depth > 0.0
-        else "Move it away, or make it smaller.",
+        remedy or f"Move it {f'by more than {depth:.6g}' if depth > 0.0 else 'away'}, or make it smaller.",
     )
 
 

@@ -20,7 +20,7 @@ class Mean(NamedTuple):
 
     def to_list(self) -> list[object]:
         """Value and error, None for what is unknown."""
-        return [_known(self.value), _known(self.error)]
+        return [known(self.value), known(self.error)]
 
 
 def mean(values: FloatArray) -> Mean:
@@ -41,8 +41,8 @@ def mean(values: FloatArray) -> Mean:
     return Mean(values.mean(axis=0), error)
 
 
-def _known(values: FloatArray) -> object:
+def known(values: FloatArray) -> object:
     """Numbers as lists, None for those that are none."""
-    known = np.asarray(values, dtype=object)
-    known[~np.isfinite(values)] = None
-    return known.tolist()
+    told = np.asarray(values, dtype=object)
+    told[~np.isfinite(values)] = None
+    return told.tolist()

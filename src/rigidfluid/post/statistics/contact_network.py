@@ -16,9 +16,10 @@ from rigidfluid.post.statistics.contact_rows import ContactRows
 
 
 class ContactNetwork(NamedTuple):
-    """Means over the states: ``coordination``, contacts of a body with others [1]; ``touching``, share of bodies that
-    have a contact, with walls too [1]; ``largest``, bodies in the largest group over all [1]; ``stress`` (d, d) of
-    contacts between bodies [force/length^(d-1)]; ``on_walls``, forces on what does not move by name (d,) [force]."""
+    """Means over the states, the first three over those with bodies: ``coordination``, contacts of a body with others
+    [1]; ``touching``, share of bodies that have a contact, with walls too [1]; ``largest``, bodies in the largest group
+    over all [1]; ``stress`` (d, d) of contacts between bodies [force/length^(d-1)]; ``on_walls``, forces on what does
+    not move by name (d,) [force]."""
 
     coordination: Mean
     touching: Mean
@@ -34,10 +35,12 @@ def contact_network(rows: ContactRows) -> ContactNetwork:
     contact: negative under pressure.
     """
     samples, force, pairs = rows.samples, rows.vectors("f"), rows.paired
-    by_state = [(rows.a[rows.state == one], rows.b[rows.state == one]) for one in range(len(samples.step))]
+    occupied = np.flatnonzero(samples.count)
+    sides = [_numbers(rows, int(state)) for state in occupied]
 
     def over_states(figure: Callable[[int, IntArray, IntArray], float]) -> Mean:
-        return mean(np.array([figure(samples.count, *one) for one in by_state]))
+        counts = samples.count[occupied].tolist()
+        return mean(np.array([figure(count, a, b) for count, (a, b) in zip(counts, sides, strict=True)]))
 
     return ContactNetwork(
         coordination=over_states(coordination),
@@ -46,6 +49,14 @@ def contact_network(rows: ContactRows) -> ContactNetwork:
         stress=mean(rows.selected(pairs).stress(force[pairs])),
         on_walls=_on_walls(rows, force),
     )
+
+
+def _numbers(rows: ContactRows, state: int) -> tuple[IntArray, IntArray]:
+    """Numbers (c,) of both sides of the contacts in a state, among the bodies that are there; -1 of others."""
+    number = np.cumsum(rows.samples.present[state]) - 1
+    here = rows.state == state
+    a, b = (np.where(side[here] >= 0, number[side[here]], -1) for side in (rows.a, rows.b))
+    return a, b
 
 
 def _touching(count: int, a: IntArray, b: IntArray) -> float:

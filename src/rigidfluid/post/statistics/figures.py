@@ -7,11 +7,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rigidfluid.post.reports.units import Units
-from rigidfluid.post.statistics.blocks import Mean
+from rigidfluid.post.statistics.blocks import Mean, known
 from rigidfluid.post.statistics.contact_network import ContactNetwork
 from rigidfluid.post.statistics.diffusion import Diffusion
 from rigidfluid.post.statistics.gap_distribution import GapDistribution
 from rigidfluid.post.statistics.pair_distribution import PairDistribution
+from rigidfluid.post.statistics.presence import Presence
 from rigidfluid.post.statistics.profiles import Profile
 from rigidfluid.post.statistics.samples import Samples
 from rigidfluid.post.statistics.structure_factor import StructureFactor
@@ -25,6 +26,7 @@ class Statistics(NamedTuple):
 
     units: Units
     samples: Samples
+    presence: Presence
     gap: Mean
     gaps: GapDistribution
     velocity: Mean
@@ -42,19 +44,20 @@ class Statistics(NamedTuple):
         """Names, numbers and lists; each mean as its value and its standard error, None for what is unknown."""
         samples, contacts, layers = self.samples, self.contacts, self.profile
         return {
-            "bodies": samples.count,
+            "bodies": len(samples.name),
+            "present": self.presence.to_dict(),
             "states": len(samples.time),
             "from": float(samples.time[0]),
             "to": float(samples.time[-1]),
-            "volume_fraction": samples.fraction,
+            "volume_fraction": self.presence.fraction.to_list(),
             "gap": self.gap.to_list(),
             "gap_distribution": {"share": self.gaps.share.tolist(), "gap": self.gaps.gap.to_list()},
             "velocity": self.velocity.to_list(),
             "velocity_fluctuations": self.fluctuations.to_list(),
             "diffusion": {
-                "coefficient": self.diffusion.coefficient.tolist(),
+                "coefficient": known(self.diffusion.coefficient),
                 "lag": self.diffusion.lag.tolist(),
-                "mean_square_displacement": self.diffusion.displacement.tolist(),
+                "mean_square_displacement": known(self.diffusion.displacement),
             },
             "pair_distribution": {"distance": self.pairs.distance.tolist(), "g": self.pairs.value.to_list()},
             "structure_factor": {"wavenumber": self.structure.wavenumber.tolist(), "s": self.structure.value.to_list()},
@@ -83,7 +86,7 @@ class Statistics(NamedTuple):
         """Figures that are no curves, in words."""
         samples, contacts = self.samples, self.contacts
         lines = [
-            f"{samples.count} bodies, {samples.fraction:.3g} of the volume",
+            f"{self.presence.words(len(samples.name))}, {float(self.presence.fraction.value):.3g} of the volume",
             f"{len(samples.time)} states from {samples.time[0]:.4g} to {samples.time[-1]:.4g} [time]",
             f"gap to the nearest surface: {told(self.gap)} [length]",
             f"velocity: {told(self.velocity)} [length/time]",

@@ -40,7 +40,7 @@ def fluid_layers(results: Results, samples: Samples, axis: int, layers: int, mos
         return None
     chosen = np.unique(np.linspace(0, len(series) - 1, min(len(series), most)).round().astype(int))
     rows = np.array([results.state_at(series[number][0]) for number in chosen])
-    bodies = np.flatnonzero(results.present[rows].all(axis=0))
+    bodies = np.flatnonzero(results.present[rows].any(axis=0))
     lower, thickness = samples.lower[axis], (samples.upper[axis] - samples.lower[axis]) / layers
     found = [layer_integrals(read_vtu(series[number][1]), axis, lower, thickness, layers) for number in chosen]
     volume, moved = (np.array(values) for values in zip(*found, strict=True))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -29,6 +30,7 @@ from rigidfluid.post.statistics.fluid_layers import OUTPUTS, fluid_layers
 from rigidfluid.post.statistics.gap_distribution import gap_distribution
 from rigidfluid.post.statistics.pair_distribution import pair_distribution
 from rigidfluid.post.statistics.plot import statistics_plot
+from rigidfluid.post.statistics.presence import presence
 from rigidfluid.post.statistics.profiles import LAYERS, profile
 from rigidfluid.post.statistics.samples import SAMPLES, samples_of
 from rigidfluid.post.statistics.structure_factor import structure_factor
@@ -66,7 +68,8 @@ def measure_statistics(
     """Measure the statistics of the bodies of a run, in memory or from its folder; nothing is written.
 
     A mean of a figure f is Σ f/s over s states at even times, at most 200, and its standard error that of blocks of
-    states.
+    states. A figure is that of the bodies that are there in the state; what wants a body has its mean over the states
+    with any.
 
     Parameters
     ----------
@@ -86,8 +89,8 @@ def measure_statistics(
     Raises
     ------
     OutputError
-        If there are fewer than two states or bodies that move, a body enters or leaves meanwhile, the times or the axis
-        are not there, or a history does not know its bodies: that of a model made in Python, or of a run that goes on.
+        If there are fewer than two states with two bodies that move, the times or the axis are not there, or a history
+        does not know its bodies: that of a model made in Python, or of a run that goes on.
 
     Notes
     -----
@@ -126,10 +129,13 @@ def measured(
     return Statistics(
         results.units,
         samples,
-        mean(mean_gap(samples.gap)),
+        presence(samples),
+        mean(mean_gap(samples.gap)[samples.count > 0]),
         gap_distribution(samples),
-        mean(mean_velocity(samples.velocity)),
-        mean(velocity_fluctuations(samples.velocity, samples.position, samples.shear)),
+        mean(samples.map_states(mean_velocity, samples.velocity)),
+        mean(
+            samples.map_states(partial(velocity_fluctuations, shear=samples.shear), samples.velocity, samples.position)
+        ),
         pair_distribution(samples),
         structure_factor(samples),
         diffusion(samples),

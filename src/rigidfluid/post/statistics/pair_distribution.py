@@ -28,16 +28,19 @@ def pair_distribution(samples: Samples) -> PairDistribution:
     """g(r) = pairs at r / those of places that are independent and even in the box that centres may be in.
 
     The box is the domain less a mean radius at each wall, so that walls change nothing for independent places. The
-    greatest distance is half of its least side. Along periods the distance is that of the nearest images.
+    greatest distance is half of its least side. Along periods the distance is that of the nearest images. States with
+    fewer than two bodies have none.
     """
     walls = np.where(samples.periodic, 0.0, 2.0 * samples.radius.mean())
     sides = np.maximum(samples.upper - samples.lower - walls, 1e-9 * samples.radius.mean())
     edges = np.linspace(0.0, max(0.5 * sides.min(), 4.0 * samples.radius.mean()), BINS + 1)
-    pairs = 0.5 * samples.count * (samples.count - 1)
-    expected = pairs * shell_shares(edges, sides, samples.periodic)
-    counted = np.array([_counts(samples, position, edges) for position in samples.position])
-    ratio = np.divide(counted, expected, out=np.zeros(counted.shape), where=expected > 0.0)
-    return PairDistribution(0.5 * (edges[1:] + edges[:-1]), mean(ratio))
+    shares = shell_shares(edges, sides, samples.periodic)
+
+    def ratio(position: FloatArray) -> FloatArray:
+        expected = 0.5 * len(position) * (len(position) - 1) * shares
+        return np.divide(_counts(samples, position, edges), expected, out=np.zeros(BINS), where=expected > 0.0)
+
+    return PairDistribution(0.5 * (edges[1:] + edges[:-1]), mean(samples.map_states(ratio, samples.position, least=2)))
 
 
 def _counts(samples: Samples, position: FloatArray, edges: FloatArray) -> FloatArray:

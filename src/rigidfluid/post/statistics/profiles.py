@@ -37,7 +37,7 @@ def profile(samples: Samples, axis: int, fluid: FluidLayers | None) -> Profile:
     inside, moved = _solid_layers(samples, edges, axis)
     volume = inside.sum(axis=2)
     share, velocity = mean(volume / (samples.volume / LAYERS)), _velocity(moved, volume)
-    place, spread = 0.5 * (edges[1:] + edges[:-1]), _fluctuations(samples.velocity, inside)
+    place, spread = 0.5 * (edges[1:] + edges[:-1]), _fluctuations(samples.zero_without(samples.velocity), inside)
     if fluid is None:
         return Profile(axis, place, share, velocity, spread, None, None)
     inside, moved = _solid_layers(fluid.samples, edges, axis)
@@ -70,12 +70,14 @@ def _over(values: FloatArray, whole: FloatArray) -> FloatArray:
 
 
 def _solid_layers(samples: Samples, edges: FloatArray, axis: int) -> tuple[FloatArray, FloatArray]:
-    """Volume (s, l, n) of each body between the edges [length^d], and the integral (s, l, d) of the velocity U + ω × r
-    of the points of all over it [length^(d+1)/time]."""
-    turning = cross(samples.angular_velocity, np.broadcast_to(np.eye(samples.dimension)[axis], samples.velocity.shape))
+    """Volume (s, l, n) of each body between the edges, none of one that is not there [length^d], and the integral (s,
+    l, d) of the velocity U + ω × r of the points of all over it [length^(d+1)/time]."""
+    velocity, spin = (samples.zero_without(one) for one in (samples.velocity, samples.angular_velocity))
+    turning = cross(spin, np.broadcast_to(np.eye(samples.dimension)[axis], velocity.shape))
     slices = [_slices(samples, edges, place) for place in _places(samples, axis)]
-    inside, moment = (np.sum(parts, axis=0) for parts in zip(*slices, strict=True))
-    moved = np.einsum("sln,snd->sld", inside, samples.velocity) + np.einsum("sln,snd->sld", moment, turning)
+    there = samples.present[:, None]
+    inside, moment = (np.where(there, np.sum(parts, axis=0), 0.0) for parts in zip(*slices, strict=True))
+    moved = np.einsum("sln,snd->sld", inside, velocity) + np.einsum("sln,snd->sld", moment, turning)
     return inside, moved
 
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from html import escape
 
-import numpy as np
-
 from rigidfluid.errors import OutputError
 from rigidfluid.post.reports.html import grid
 from rigidfluid.post.reports.report import Section
@@ -28,7 +26,8 @@ _WORDS = "Structure, motion and layers of the bodies, means from a third of the 
 
 def section(results: Results) -> Section:
     """Statistics from a third of the run on; nothing for few bodies without stresslets, or for one."""
-    tables, count = tables_of(load_results(results.folder)), int(np.sum(~results.system.prescribed))
+    tables, moving = tables_of(load_results(results.folder)), results.present & ~results.system.prescribed
+    count = int(moving.sum(axis=1).max())
     if count < (LEAST if len(tables["stresslets"].get("step", ())) else FEWEST):
         return Section()
     try:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.integrate import cumulative_trapezoid
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
@@ -23,13 +25,14 @@ LEAST = 2
 
 @dataclass(frozen=True)
 class Samples:
-    """Bodies that move, n of them, in s states.
+    """Bodies that move, in s states: n of them, all that were there in any of these.
 
     ``step`` (s,) numbers of the states; ``time`` (s,) [time]; ``position`` and ``velocity`` (s, n, d) [length,
     length/time]; ``angular_velocity`` (s, n, k) [rad/time]; ``gap`` (s, n), of each body to its nearest surface
-    [length]; ``radius`` (n,) of balls of the same volume [length]; ``name`` of each body; ``lower`` and ``upper`` (d,),
-    corners of the domain [length]; ``volume`` of the domain with bodies [length^d]; ``period`` (d,) along each axis,
-    infinite between walls [length]; ``shear`` of the fluid between walls that slide.
+    [length]; where a body is not there, not a number, and an infinite gap; ``radius`` (n,) of balls of the same volume
+    [length]; ``name`` of each body; ``lower`` and ``upper`` (d,), corners of the domain [length]; ``volume`` of the
+    domain with bodies [length^d]; ``period`` (d,) along each axis, infinite between walls [length]; ``shear`` of the
+    fluid between walls that slide.
     """
 
     step: FloatArray
@@ -57,9 +60,27 @@ class Samples:
         return np.asarray(np.where(self.periodic, length * np.rint(differences / length), 0.0))
 
     @property
-    def count(self) -> int:
-        """Number of bodies n."""
-        return len(self.radius)
+    def present(self) -> BoolArray:
+        """Tell which bodies are there in each state (s, n)."""
+        return np.isfinite(self.position[..., 0])
+
+    @property
+    def count(self) -> IntArray:
+        """Number of bodies in each state (s,)."""
+        return np.asarray(np.count_nonzero(self.present, axis=1))
+
+    def map_states(self, figure: Callable[..., ArrayLike], *values: FloatArray, least: int = 1) -> FloatArray:
+        """A ``figure`` of the bodies in each state that has at ``least`` so many (t, …), by their rows (b, …) of the
+        ``values`` (s, n, …)."""
+        states = zip(self.present, *values, strict=True)
+        return np.array(
+            [figure(*(one[there] for one in rows)) for there, *rows in states if np.count_nonzero(there) >= least]
+        )
+
+    def zero_without(self, values: FloatArray) -> FloatArray:
+        """The ``values`` (s, n, …), and zero where a body is not there."""
+        there = self.present.reshape(*self.present.shape, *[1] * (values.ndim - 2))
+        return np.where(there, values, 0.0)
 
     @property
     def dimension(self) -> int:
@@ -73,30 +94,23 @@ class Samples:
 
     @property
     def own_path(self) -> FloatArray:
-        """Positions (s, n, d) without what a shear has moved bodies since the first state, and less their mean
-        [length]."""
-        path = self.position
-        if self.shear is not None:
-            sheared = cumulative_trapezoid(self.shear.velocity(path), self.time, axis=0, initial=0)
-            path = path - sheared
-        return np.asarray(path - path.mean(axis=1, keepdims=True))
+        """Positions (s, n, d) without what a shear has moved each body, to a constant of its own [length]."""
+        if self.shear is None:
+            return self.position
+        flow = self.zero_without(self.shear.velocity(self.position))
+        return np.asarray(self.position - cumulative_trapezoid(flow, self.time, axis=0, initial=0))
 
     @property
     def body_volume(self) -> FloatArray:
         """Volume of each body (n,) [length^d]."""
         return np.asarray(np.pi * self.radius**2 if self.dimension == 2 else 4.0 / 3.0 * np.pi * self.radius**3)
 
-    @property
-    def fraction(self) -> float:
-        """Volume of the bodies over that of the domain [1]."""
-        return float(self.body_volume.sum() / self.volume)
-
 
 def samples_of(results: Results, since: float | None, until: float | None, most: int = SAMPLES) -> Samples:
     """Samples of a run from one time to another, at ``most`` so many; from a third of it on if not given, when most
     starts are forgotten.
 
-    Raises OutputError if there are too few states or bodies, or a body enters or leaves meanwhile.
+    Raises OutputError if there are too few states with too few bodies.
     """
     start, end = float(results.time[0]), float(results.time[-1])
     since, until = start + (end - start) / 3.0 if since is None else since, end if until is None else until
@@ -106,18 +120,13 @@ def samples_of(results: Results, since: float | None, until: float | None, most:
     inside = int(np.sum((results.time >= since) & (results.time <= until)))
     wanted = np.linspace(since, min(until, end), max(LEAST, min(SAMPLES, most, inside)))
     rows = np.unique([results.state_at(time) for time in wanted])
-    present = results.present[rows[0] : rows[-1] + 1]
-    moving = np.flatnonzero(~results.system.prescribed & present.any(axis=0))
-    changing = [results.names[body] for body in moving if not present[:, body].all()]
-    if changing:
-        remedy = "Choose times between which no body does, by --since and --until."
-        found = f"from {since:g} to {until:g} bodies that enter or leave: {', '.join(changing[:20])}"
-        raise OutputError("statistics", found, "the same bodies at all times", remedy)
-    if len(rows) < LEAST or len(moving) < LEAST:
-        found = f"{len(rows)} states and {len(moving)} bodies that move"
+    moving = results.present[rows] & ~results.system.prescribed
+    count = np.count_nonzero(moving, axis=1)
+    if np.count_nonzero(count >= LEAST) < LEAST:
+        found = f"{len(rows)} states, with at most {count.max()} bodies that move"
         remedy = "Choose a longer time, or a run of more bodies."
-        raise OutputError("statistics", found, f"at least {LEAST} of each", remedy)
-    return samples_at(results, rows, moving)
+        raise OutputError("statistics", found, f"at least {LEAST} states with at least {LEAST} bodies", remedy)
+    return samples_at(results, rows, np.flatnonzero(moving.any(axis=0)))
 
 
 def samples_at(results: Results, rows: IntArray, bodies: IntArray) -> Samples:

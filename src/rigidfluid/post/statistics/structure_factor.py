@@ -37,8 +37,7 @@ def structure_factor(samples: Samples) -> StructureFactor:
     band = np.rint(np.linalg.norm(waves, axis=1) / unit).astype(int)
     waves, band = waves[band <= WAVES], band[band <= WAVES]
     count = np.bincount(band)
-    power = np.array([_power(waves, position) for position in samples.position])
-    sums = np.array([np.bincount(band, one) for one in power])
+    sums = samples.map_states(lambda position: np.bincount(band, _power(waves, position)), samples.position)
     kept = np.flatnonzero(count)
     return StructureFactor(unit * kept, mean(sums[:, kept] / count[kept]))
 

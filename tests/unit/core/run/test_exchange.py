@@ -203,6 +203,17 @@ def test_a_name_is_not_used_twice() -> None:
         run.add(FIRST)
 
 
+def test_a_body_that_enters_in_another_one_is_named_first() -> None:
+    with pytest.raises(SceneError, match=r"body 'third'.*where body 'third' overlaps body 'second' by 0.1"):
+        dry().add(THIRD | {"position": [0.7, 0.5]})
+
+
+def test_the_name_of_a_joint_is_refused_as_such() -> None:
+    run = dry(joint=[{"type": "rod", "name": "link", "between": ["first", "second"]}])
+    with pytest.raises(SceneError, match=r"body.name: found 'link', the name of a joint; allowed is a name that no"):
+        run.add(THIRD | {"name": "link"})
+
+
 def test_joined_bodies_stay() -> None:
     joint = {"type": "rod", "between": ["first", "second"]}
     run = dry(joint=[joint])

@@ -106,7 +106,7 @@ def test_a_rule_in_space_knows_all_components() -> None:
     body = {"name": "a", **BALL, "position": [0.3, 0.4, 0.6], "velocity": [0.1, 0.2, 0.3]}
     other = {"name": "b", **BALL, "position": [0.7, 0.4, 0.6], "angular_velocity": [1.0, 2.0, 3.0]}
     run = Simulation(scene_from_dict(dry_tables(body, other, sink=[{"when": "z + vz + wz > 100"}], end=0.1)))
-    values = rule_values(Moment(run.model, run.system, run.state, run.population, run.time))
+    values = rule_values(Moment(run.model, run.system, run.state, run.population, run.time, ()))
     found = {name: values[name].tolist() for name in values}
     assert found["x"] == [0.3, 0.7]
     assert found["z"] == [0.6, 0.6]

@@ -11,6 +11,7 @@ import pytest
 from scenes import dry_tables, wet_tables
 
 from rigidfluid.api import Simulation, scene_from_dict
+from rigidfluid.core.seeding.regions import region_of
 from rigidfluid.errors import SceneError, SceneErrors, StepError
 
 POST = {"name": "post", "type": "sphere", "radius": 0.1, "density": 2.0, "position": [0.8, 0.8], "fixed": True}
@@ -241,3 +242,35 @@ def test_a_law_between_bodies_of_a_source_leaves_others_alone() -> None:
 def test_names_that_no_source_gives_are_refused() -> None:
     with pytest.raises(SceneError, match=r"interaction\.0\.names\.0.*'grin\*'.*'grain\*'"):
         scene_from_dict(tables(interaction=[BOUNCE | {"names": ["grin*"]}]))
+
+
+def test_the_region_of_a_sink_is_read_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A grain in it leaves all the same, after another one has left."""
+    read, region = [], {"type": "box", "lower": [0.0, 0.0], "upper": [1.0, 0.4]}
+    run = Simulation(scene_from_dict(tables(sink=[{"region": region}])))
+
+    def told(*arguments: Any) -> Any:
+        read.append(arguments)
+        return region_of(*arguments)
+
+    monkeypatch.setattr("rigidfluid.core.case.sinks.region_of", told)
+    run.go()
+    assert (run.history.exchanges["change"] == "gone").sum() > 0
+    assert run.state.count > 3
+    assert len(read) == 1
+
+
+def test_a_body_at_an_open_end_is_told_of_sinks() -> None:
+    """It has passed the outlet when the next one of a source enters."""
+    ends = [
+        {"on": "left", "type": "velocity", "velocity": [1.0, 0.0]},
+        {"on": "right", "type": "pressure", "pressure": 0.0},
+    ]
+    late = {"type": "box", "lower": [0.1, 0.3], "upper": [0.4, 0.9]}
+    source = SOURCE | {"times": [0.0, 0.45], "region": late, "velocity": [2.0, 0.0]}
+    post = {"name": "post", "type": "sphere", "radius": 0.05, "density": 1.0, "position": [0.5, 0.1], "fixed": True}
+    run = Simulation(
+        scene_from_dict(dry_tables(post, source=[source], boundary=ends, fluid={"gravity": [0.0, 0.0]}, end=1.0))
+    )
+    with pytest.raises(StepError, match=r"grain0.*let it leave before, by a \[\[sink\]\] with on = 'right'"):
+        run.go()

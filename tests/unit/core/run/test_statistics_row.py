@@ -78,7 +78,7 @@ def test_their_means_are_the_statistics_of_the_folder(tmp_path: Path) -> None:
     }.items():
         np.testing.assert_allclose([column[name].mean() for name in names], np.atleast_1d(told[key][0]), atol=1e-12)
     assert column["coordination"].mean() == pytest.approx(told["contacts"]["coordination"][0])
-    assert column["volume_fraction"][0] == pytest.approx(told["volume_fraction"])
+    assert column["volume_fraction"][0] == pytest.approx(told["volume_fraction"][0])
     for row in range(2):
         for other in range(2):
             wanted = told["contacts"]["stress"][0][row][other]

@@ -64,7 +64,7 @@ def tables(*boundary: Any, **changes: Any) -> dict[str, Any]:
             LEFT | {"type": "pressure"},
             "boundary.1.pressure: this key is missing. Add 'pressure': Pressure on the surface",
         ),
-        (LEFT | {"type": "periodic", "pressure_drop": "1"}, "boundary.1.pressure_drop: found '1'; allowed is a valid"),
+        (LEFT | {"type": "periodic", "pressure_drop": [1]}, "boundary.1.pressure_drop: found [1]; allowed is a valid"),
         (LEFT | {"type": "symetry"}, "boundary.1.type: found 'symetry'; allowed is 'wall', 'velocity', "),
         (LEFT | {"type": True}, "boundary.1.type: found True; allowed is 'wall', "),
         (LEFT, "boundary.1.type: found nothing; allowed is 'wall', "),

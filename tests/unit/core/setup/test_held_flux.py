@@ -97,6 +97,25 @@ def test_a_flux_that_swings_keeps_the_balance_of_energy() -> None:
     assert left[0] < 0.02
 
 
+def test_a_drop_that_swings_drives_a_flux_in_step_without_inertia() -> None:
+    """Stokes flow past a fixed body: the flux is that of a unit drop times the drop, at each time."""
+    one, swings = (rigidfluid.run(scene(drive={"pressure_drop": drop})).driving for drop in (1.0, "3*cos(5*t)"))
+    drop = 3.0 * np.cos(5.0 * swings["time"][1:])
+    np.testing.assert_allclose(swings["pressure_drop"][1:], drop, rtol=1e-9)
+    np.testing.assert_allclose(swings["flux"][1:], one["flux"][-1] * drop, rtol=1e-6)
+
+
+def test_a_drop_that_swings_keeps_the_balance_of_energy() -> None:
+    """Its work is that of the drop at each time: second order."""
+    left = []
+    for step in (0.02, 0.01):
+        fluid, time = {"model": "navier-stokes"}, {"end": 0.4, "step": step}
+        energy = rigidfluid.run(scene(drive={"pressure_drop": "20*sin(5*t)**2"}, fluid=fluid, time=time)).energy
+        left.append(abs(energy["residual"][-1]) / energy["boundary"].max())
+    assert left[1] < 0.35 * left[0]
+    assert left[0] < 0.02
+
+
 def test_a_run_is_resumed_to_the_last_bit(tmp_path: Path) -> None:
     def case(end: float) -> rigidfluid.Scene:
         body = [HELD | {"fixed": False}]
@@ -118,9 +137,11 @@ def test_bodies_are_expected_at_the_speed_of_the_flux() -> None:
     [
         ({"flux": 1.0, "pressure_drop": 1.0}, r"boundary.0.flux: flux takes the place of pressure_drop, and both"),
         ({"flux": "x"}, r"boundary.0.flux: found an unknown name"),
+        ({"pressure_drop": "y"}, r"boundary.0.pressure_drop: found an unknown name"),
+        ({"pressure_drop": "1/t"}, r"boundary.0.pressure_drop on 'left': found inf from '1/t' at time 0 and point"),
         ({"flux": "1/t"}, r"boundary.0.flux on 'left': found inf from '1/t' at time 0; allowed"),
     ],
-    ids=["both", "place", "infinite"],
+    ids=["both", "place", "place-of-a-drop", "infinite", "infinite-drop"],
 )
 def test_a_flux_that_cannot_be_is_refused(drive: dict[str, Any], message: str) -> None:
     with pytest.raises(SceneError, match=message):

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import rigidfluid
+from rigidfluid.api import Simulation
 from rigidfluid.core.model.types import Fields
 from rigidfluid.core.output.vtu import read_vtu
 from rigidfluid.post.reports.results import Results, read_results
@@ -128,6 +129,22 @@ def test_fluid_and_bodies_together_carry_the_flux(tmp_path: Path, axis: int) -> 
     np.testing.assert_allclose(found.value[:, 0].mean(), flux, rtol=FLUX)
     if axis == 0:
         np.testing.assert_allclose(found.value[:, 0], flux, rtol=LAYER)
+
+
+def test_a_body_that_enters_carries_its_part_of_the_flux(tmp_path: Path) -> None:
+    """It is there at the last of two output times alone."""
+    stokes = {"model": "stokes", "density": 1.0, "viscosity": 0.01}
+    tables = channel(2, DISK | {"position": [0.4, 0.42]}, fluid=stokes)
+    run = Simulation(rigidfluid.scene_from_dict(tables), tmp_path)
+    run.go(0.02)
+    run.add(DISK | {"name": "guest", "position": [1.4, 0.6]})
+    run.go()
+    run.finish("complete")
+    run.close()
+    found, driving = profiled(read_results(tmp_path), 1).mixture, run.history.driving
+    assert found is not None
+    outputs = np.isclose(driving["time"][:, None], [0.02, 0.04]).any(axis=1)
+    np.testing.assert_allclose(found.value[:, 0].mean(), driving["flux"][outputs].mean(), rtol=FLUX)
 
 
 @pytest.mark.parametrize(

@@ -290,7 +290,7 @@ def test_of_a_run_they_are_written_beside_its_results(tmp_path: Path) -> None:
     ):
         np.testing.assert_array_equal(written[table][column], np.array(wanted, dtype=float))
     assert data["bodies"] == 6
-    assert data["volume_fraction"] == pytest.approx(6 * np.pi * 0.01)
+    assert data["volume_fraction"] == pytest.approx([6 * np.pi * 0.01, 0.0])
     assert data["from"] == pytest.approx(0.1)
     assert data["contacts"]["touching"][0] > 0.0
     assert set(data["contacts"]["force_on"]) <= {"left", "right", "bottom", "top"}
@@ -320,7 +320,8 @@ def test_the_report_of_many_bodies_has_statistics_and_that_of_few_has_none(tmp_p
 
 
 def test_one_body_with_stresslets_has_no_statistics_in_its_report() -> None:
-    one = SimpleNamespace(folder=Path(), system=SimpleNamespace(prescribed=np.array([True, False])))
+    system = SimpleNamespace(prescribed=np.array([True, False]))
+    one = SimpleNamespace(folder=Path(), system=system, present=np.ones((3, 2), dtype=bool))
     tables = {"stresslets": {"step": np.arange(3)}}
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("rigidfluid.post.statistics.report_section.load_results", lambda folder: folder)
@@ -331,14 +332,15 @@ def test_one_body_with_stresslets_has_no_statistics_in_its_report() -> None:
 def test_the_report_says_why_a_run_has_no_statistics(tmp_path: Path) -> None:
     balls = [ball([0.17 + 0.3 * (n % 3), 0.2 + 0.3 * (n // 3)], [0.0, 0.0]) for n in range(8)]
     run = Simulation(dry_scene({}, *balls, end=0.06, step=1e-2), tmp_path)
-    run.go(0.04)
-    run.remove("body3")
+    run.go(0.01)
+    for number in range(7):
+        run.remove(f"body{number}")
     run.go()
     run.finish("complete")
     run.close()
     report(tmp_path, sections=(section,))
     assert (
-        "None: from 0.02 to 0.06 bodies that enter or leave: body3. rigidfluid statistics"
+        "None: 5 states, with at most 1 bodies that move. rigidfluid statistics"
         in (tmp_path / "report.html").read_text()
     )
 

@@ -63,7 +63,8 @@ def are_separate(system: System, contacts: Contacts) -> BoolArray:
 def refuse_overlap(system: System, body: int, gap: float) -> None:
     """Raise StepRejected unless the ``gap`` of a ``body`` [length] is positive."""
     if not gap > 0.0:
-        remedy = "Strengthen the contact force, widen its range or refine mesh.size_body."
+        others = "widen its range or refine mesh.size_body" if system.has_fluid else "or widen its range"
+        remedy = f"Strengthen the contact force, {others}."
         if body in system.joined:
             remedy += " Joined bodies do not repel each other: they need a spring in the joint, or more room."
         raise StepRejected(
