@@ -37,6 +37,7 @@ from rigidfluid.post.reports.pictures import (
     flow_picture,
     gap_picture,
     mesh_picture,
+    scalar_picture,
     streamline_picture,
     viscosity_picture,
     whole_mesh_picture,
@@ -112,8 +113,9 @@ def _flow_pictures(results: Results, plane: ViewPlane, body: int | None) -> Iter
     yield "vorticity", caption, flow_picture(shown, turns), raster
     yield "pressure", f"Dynamic pressure.{where}", flow_picture(shown, pressure), raster
     if shown[-1].section.fields.scalar is not None:
-        caption = f"The scalar that the fluid carries along.{where}"
-        yield "scalar", caption, flow_picture(shown, shared_scale(results, "scalar", plane, body)), raster
+        too = " Bodies that conduct it have its colours inside." if any(one.insides for one in shown) else ""
+        caption = f"The scalar that the fluid carries along.{too}{where}"
+        yield "scalar", caption, scalar_picture(shown, shared_scale(results, "scalar", plane, body)), raster
     if shown[-1].section.fields.viscosity is not None:
         stress = _yield_stress(results)
         line = "" if stress is None else " Inside of the white line the stress is below the yield stress."
