@@ -119,5 +119,9 @@ def _attracting(law: PoseLaw, distance: float, dimension: int) -> tuple[FloatArr
 
     starts = np.random.default_rng(0).normal(size=(_STARTS, 2 * components)) * (np.pi if dimension == 2 else 1.0)
     scale = max(abs(energy(start)) for start in starts) or 1.0
-    ends = [minimize(lambda unknowns: energy(unknowns) / scale, start).x for start in starts]
+
+    def scaled(unknowns: FloatArray) -> float:
+        return energy(unknowns) / scale
+
+    ends = [np.asarray(minimize(scaled, start).x) for start in starts]
     return rotations(min(ends, key=energy))
