@@ -11,7 +11,8 @@ from scipy import sparse
 from rigidfluid.core.fluid.conduction import Conduction, Inside
 from rigidfluid.core.fluid.scalar import ScalarProblem
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.mechanics.frames import to_world
+from rigidfluid.core.geometry.lattice import Lattice
+from rigidfluid.core.mechanics.frames import to_body_frame, to_world
 from rigidfluid.core.model.types import InsideFields, Pose
 from rigidfluid.taylor_hood.elements.inside_space import InsideSpace
 from rigidfluid.taylor_hood.elements.numbering import Numbering
@@ -60,6 +61,18 @@ class Insides:
             scalar=values,
             body=np.repeat(list(self.spaces), counts),
         )
+
+    def sampled(self, values: FloatArray, pose: Pose, points: FloatArray, lattice: Lattice) -> FloatArray:
+        """The ``values`` (nodes,) at ``points`` (N, d), (N,), not numbers outside of the bodies that conduct and of
+        their images by a ``lattice``."""
+        found, first = np.full(len(points), np.nan), 0
+        for body, space in self.spaces.items():
+            centre = pose.position[body]
+            own = to_body_frame(pose, body, centre + lattice.shortened(points - centre))
+            inside, basis = space.held(own)
+            found[inside] = basis @ values[first : first + space.nodes]
+            first += space.nodes
+        return found
 
     def means(self, on_surfaces: FloatArray, values: FloatArray) -> FloatArray:
         """Mean of ``values`` (nodes,) in each body that conducts, and that ``on_surfaces`` (surfaces,) of all else."""
