@@ -44,6 +44,7 @@ from rigidfluid.post.reports.pictures import (
 )
 from rigidfluid.post.reports.results import Results, read_results
 from rigidfluid.post.reports.rotation_plot import rotation_plot, torque_plot, turning
+from rigidfluid.post.reports.scalar_plot import scalar_plot
 from rigidfluid.post.reports.scale import QUANTITIES, Scale
 from rigidfluid.post.reports.shared_scale import shared_scale, shared_scales
 from rigidfluid.post.reports.space import dry_space_picture, flow_space_picture
@@ -175,6 +176,9 @@ def _pictures(results: Results, plane: ViewPlane, body: int | None) -> Iterator[
         yield "space", "The bodies, and the paths of a few.", dry_space_picture(results, times, plane), ("png",)
     if results.names:
         yield from _body_plots(results, plane)
+    if results.model.fluid.scalar is not None and len(results.time) > 1:
+        caption = "The scalar: means in bodies, fluxes into the fluid, and the extremes."
+        yield "scalar_over_time", caption, scalar_plot(results), both
     yield "energy", "Energy supplied, and where it is.", energy_plot(results), both
     if results.model.time.tolerance is not None:
         yield "step", "How long the steps are.", step_plot(results), both

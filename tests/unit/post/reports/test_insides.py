@@ -13,6 +13,7 @@ from matplotlib.colors import to_rgb
 import rigidfluid
 from rigidfluid.core.case.load import scene_from_dict
 from rigidfluid.core.model.types import Fields
+from rigidfluid.core.output.history import History
 from rigidfluid.post.movies import Look, movie
 from rigidfluid.post.movies.picture import draw_bodies, flow_image, inside_image, paint_flow
 from rigidfluid.post.movies.shot import shot_of
@@ -21,6 +22,7 @@ from rigidfluid.post.reports.insides import inside_section
 from rigidfluid.post.reports.moment import moment
 from rigidfluid.post.reports.pictures import flow_picture, scalar_picture
 from rigidfluid.post.reports.results import Results, read_results
+from rigidfluid.post.reports.scalar_plot import scalar_plot
 from rigidfluid.post.reports.shared_scale import shared_scale
 from rigidfluid.post.reports.style import BODY
 from rigidfluid.post.reports.view_plane import ViewPlane, view_plane
@@ -115,9 +117,26 @@ def test_a_picture_of_the_scalar_shows_the_insides_and_others_do_not(results: Re
     assert len(outlines.get_segments()) == len(shown[0].outlines)
 
 
+def test_a_plot_over_time_has_means_fluxes_and_extremes_of_what_there_is(results: Results) -> None:
+    """No panel of faces, through which nothing goes here."""
+    history = History(2, folder=results.folder)
+    figure = scalar_plot(results)
+    lines = {axes.get_ylabel(): {str(one.get_label()): one for one in axes.lines} for axes in figure.axes}
+    mean, flux = "mean in bodies\n[scalar]", "flux from bodies\n[scalar·area/time]"
+    assert list(lines) == [mean, flux, "extremes [scalar]"]
+    assert set(lines[mean]) == set(lines[flux]) == {"conducts", "lumped"}
+    for name in ("conducts", "lumped"):
+        mine = history.scalar_fluxes["surface"] == name
+        for label, column in ((mean, "inside"), (flux, "flux")):
+            np.testing.assert_array_equal(lines[label][name].get_ydata(), history.scalar_fluxes[column][mine])
+    np.testing.assert_array_equal(lines["extremes [scalar]"]["greatest"].get_ydata(), history.scalar["greatest"])
+    np.testing.assert_array_equal(lines[mean]["lumped"].get_xdata(), history.scalar["time"])
+
+
 def test_report_and_movie_of_such_a_run_are_made(folder: Path, tmp_path: Path) -> None:
     page = report(folder)[-1].read_text(encoding="utf-8")
     assert "Bodies that conduct it have its colours inside." in page
+    assert (folder / "report" / "scalar_over_time.svg").exists()
     assert movie(folder, tmp_path / "a.gif", Look(show="scalar", longer=60)).exists()
 
 
