@@ -1,4 +1,4 @@
-"""What pictures show inside bodies that conduct a scalar, in the colours of the fluid around them."""
+"""Colours inside bodies that conduct a scalar, as in the fluid around them."""
 
 from __future__ import annotations
 
