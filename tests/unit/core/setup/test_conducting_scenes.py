@@ -140,6 +140,21 @@ def test_probes_find_the_image_of_a_disk_across_periodic_surfaces_and_its_own_in
     np.testing.assert_allclose(start, [2.45, 2.35, 7.65, 0.1], atol=1e-9)
 
 
+def test_a_probe_beside_the_short_axis_of_an_ellipse_is_in_the_fluid() -> None:
+    """Nearer to its centre than its ends are."""
+    ellipse = {"type": "ellipsoid", "name": "disk", "semi_axes": [0.2, 0.08], "density": 1.2, "position": [0.5, 1.4]}
+    seen = rigidfluid.run(
+        scene(
+            {**CONDUCTS, "value": 5.0},
+            body=[{**ellipse, "fixed": True}],
+            time={"end": 0.01, "step": 0.01},
+            output={"every": 0.01, "probes": [[0.5, 1.53], [0.6, 1.4]]},
+        )
+    ).probes["scalar"]
+    assert seen[0] < 4.0
+    assert seen[1] == pytest.approx(5.0, rel=1e-9)
+
+
 def in_periodic_channel(start: float) -> Any:
     """Results of a disk from x = ``start`` on, which a drop of pressure takes along through a few periods."""
     x = f"2*pi*(x - {start})"
