@@ -163,7 +163,7 @@ def _cavity(rayleigh: float, cells: float) -> tuple[dict[str, Any], FloatArray]:
     worst = float(np.abs(run.history.scalar["imbalance"]).max())
     spent = time.process_time() - began
     grid = np.stack(np.meshgrid(*[np.linspace(0.0, 1.0, GRID)] * 2), axis=2).reshape(-1, 2)
-    temperature = run.system.backend.probe_scalar(run.state.fluid, run.state.mesh, grid)
+    temperature = run.system.backend.probe_scalar(run.state.fluid, run.state.mesh, run.state.pose, grid)
     row = {"Ra": rayleigh, "cells": cells, "hot": hot, "cold": -cold, "residual": worst / hot, "s": spent}
     return row, temperature.reshape(GRID, GRID)
 

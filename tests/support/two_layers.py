@@ -17,7 +17,7 @@ from rigidfluid.core.fluid.conditions import BoundaryCondition, PrescribedVeloci
 from rigidfluid.core.fluid.conduction import Conduction, Inside
 from rigidfluid.core.fluid.scalar import ScalarCondition, ScalarProblem
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.mechanics.frames import to_body_frame, to_world
+from rigidfluid.core.mechanics.frames import to_world
 from rigidfluid.core.mesh.fluid_domain import FluidDomain
 from rigidfluid.core.mesh.generation.curved_edges import with_curved_edges
 from rigidfluid.core.mesh.generation.inside import InsideOfBody, inside_mesh
@@ -145,10 +145,7 @@ def error_outside(flow: Flow, exact: FloatArray) -> float:
 
 def values_at(flow: Flow, points: FloatArray) -> FloatArray:
     """Values (N,) at ``points`` (N, d) of fluid and body."""
-    space, found = flow.backend._insides.spaces[0], flow.backend.probe_scalar(flow.fluid, flow.mesh, points)
-    there = np.linalg.norm(points, axis=1) < BALL
-    found[there] = space.basis(to_body_frame(flow.pose, 0, points[there])) @ flow.fluid["scalar_inside"]
-    return found
+    return flow.backend.probe_scalar(flow.fluid, flow.mesh, flow.pose, points)
 
 
 def slowest_mode(conductivity: float, capacity: float) -> tuple[float, Value]:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from rigidfluid.checks.design_contacts import DesignContacts
+from rigidfluid.checks.design_contacts import DesignContacts, RepresentativeContacts
 from rigidfluid.checks.finding import round_down, round_up
 from rigidfluid.core.contact.laws.repulsion import AUTO, Repulsion
 from rigidfluid.core.model.wrapped_law import bare
 
 
-def strength_remedy(design: DesignContacts, share: float) -> tuple[Mapping[str, float], str]:
+def strength_remedy(design: DesignContacts | RepresentativeContacts, share: float) -> tuple[Mapping[str, float], str]:
     """Parameter change for laws that supply the fraction ``share`` < 1 of what is required: ``strength``, the factor on
     the law [1], with the parameter where it is known (a force ∝ 1/ε has ε · share), and the remedy in words."""
     if share <= 0.0:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from rigidfluid.checks.attraction import attraction_findings
 from rigidfluid.checks.boundary_layer import layer_findings
 from rigidfluid.checks.design_contacts import design_contacts
 from rigidfluid.checks.domain_rows import DomainRow, domain_row
@@ -139,6 +140,7 @@ def findings(model: Model, system: System) -> Iterator[Finding]:
     yield from chain(source_findings(model), free_fall_findings(model, system))
     yield from chain(unit_findings(model, system), tolerance_findings(time), facet_findings(system))
     yield from chain(joint_findings(model, system), mechanism_findings(model, system))
+    yield from attraction_findings(model, system)
     if system.fluid is None:
         yield from dry_run_time_findings(system, time)
     if mesh is not None:

@@ -12,6 +12,7 @@ from pydantic import Field
 
 from rigidfluid.core.fluid.fluid_problem import FluidProblem
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
+from rigidfluid.core.geometry.lattice import Lattice
 from rigidfluid.core.model.flow_error import ErrorRate, MeshVelocity, RefinedFlow, Refinement
 from rigidfluid.core.model.fluid_backend import Filling, FluidBackend
 from rigidfluid.core.model.latest import Latest
@@ -202,8 +203,16 @@ class TaylorHoodBackend(FluidBackend):
         return mesh.ranks.bcast((velocity, pressure))
 
     @final
-    def probe_scalar(self, fluid: FluidState, mesh: Mesh, points: FloatArray) -> FloatArray:
-        return self._samples(mesh, points).quadratic(fluid["scalar"])
+    def probe_scalar(self, fluid: FluidState, mesh: Mesh, pose: Pose, points: FloatArray) -> FloatArray:
+        found = self._samples(mesh, points).quadratic(fluid["scalar"])
+        if not (insides := self._insides_of_bodies()):
+            return found
+        from rigidfluid.taylor_hood.stepping.scalar_step import INSIDE
+
+        ways = np.zeros((0, self.problem.dimension)) if mesh.periods is None else mesh.periods.ways
+        lattice = Lattice(ways, np.zeros(self.problem.dimension))
+        inside = insides.sampled(fluid[INSIDE[0]], mesh.images_of(pose), points, lattice)
+        return np.where(np.isnan(inside), found, inside)
 
     @final
     def driving(self, fluid: FluidState, mesh: Mesh) -> FloatArray:

@@ -76,7 +76,9 @@ def test_a_disk_of_the_fluids_properties_cools_as_the_fluid_would():
         flow = started(round_mesh(2, 0.1, empty=len(conditions) == 1), *conditions, initial=hill)
         for _ in range(10):
             flow = flow.after(0.05)
-        found.append((flow.backend.probe_scalar(flow.fluid, flow.mesh, samples), flow.advance.scalar.flux[-1]))
+        found.append(
+            (flow.backend.probe_scalar(flow.fluid, flow.mesh, flow.pose, samples), flow.advance.scalar.flux[-1])
+        )
     (with_disk, flux), (without, other_flux) = found
     np.testing.assert_allclose(with_disk, without, rtol=2e-3)
     assert flux == pytest.approx(other_flux, rel=1e-4)

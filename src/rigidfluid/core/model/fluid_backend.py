@@ -189,10 +189,10 @@ class FluidBackend(Part):
     def probe(self, fluid: FluidState, mesh: Mesh, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Velocity (N, d) and pressure (N,) at ``points`` (N, d); outside the mesh the nearest cell's values."""
 
-    @gives(rows(lambda _, fluid, mesh, points: points.shape[:1], shorter=True))
-    def probe_scalar(self, fluid: FluidState, mesh: Mesh, points: FloatArray) -> FloatArray:
-        """The scalar (N,) at ``points`` (N, d), as `probe` gives the rest; asked of backends with `scalars` alone, no
-        numbers of those that do not tell it."""
+    @gives(rows(lambda _, fluid, mesh, pose, points: points.shape[:1], shorter=True))
+    def probe_scalar(self, fluid: FluidState, mesh: Mesh, pose: Pose, points: FloatArray) -> FloatArray:
+        """The scalar (N,) at ``points`` (N, d), as `probe` gives the rest, but inside bodies that conduct its own;
+        asked of backends with `scalars` alone, no numbers of those that do not tell it."""
         return np.full(len(points), np.nan)
 
     @gives(backends.driving)

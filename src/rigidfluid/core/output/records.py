@@ -232,7 +232,7 @@ def _probe_rows(system: System, probes: FloatArray, state: State, stamp: Row) ->
     velocity, pressure = system.backend.probe(state.fluid, state.mesh, probes)
     scalar = np.full(len(probes), np.nan)
     if system.fluid is not None and system.fluid.scalar is not None:
-        scalar = system.backend.probe_scalar(state.fluid, state.mesh, probes)
+        scalar = system.backend.probe_scalar(state.fluid, state.mesh, state.pose, probes)
     if system.window is not None:  # nothing is known of the fluid outside
         outside = ~system.window.meshed_domain(state.pose).contains(probes)
         velocity[outside], pressure[outside] = np.nan, np.nan

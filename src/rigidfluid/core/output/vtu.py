@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidfluid.core.geometry.arrays import FloatArray, IntArray
-from rigidfluid.core.model.types import Fields
+from rigidfluid.core.model.types import Fields, InsideFields
 from rigidfluid.core.output.cell_gradients import nodal_shear_rate, nodal_vorticity
 from rigidfluid.core.output.disk import open_new, replace_text
 from rigidfluid.core.output.result_file import require_result
@@ -131,13 +131,11 @@ def read_vtu(path: Path) -> Fields:
             pieces = [path.parent / piece.attrib["Source"] for piece in ET.parse(path).iter("Piece")]
         return _joined([read_vtu(piece) for piece in pieces])
     with _reading(path):
-        arrays = {array.get("Name"): _values(array) for array in ET.parse(path).iter("DataArray")}
-        nodes, cells = len(arrays["points"]), len(arrays["types"])
-        connectivity = arrays["connectivity"].reshape(cells, -1).astype(np.int64)
-        dimension = _DIMENSIONS[connectivity.shape[1]]
+        points, cells, arrays = _grid(path)
+        nodes, dimension = points.shape
         return Fields(
-            points=arrays["points"][:, :dimension].astype(np.float64),
-            cells=connectivity,
+            points=points,
+            cells=cells,
             velocity=arrays["velocity"].reshape(nodes, 3)[:, :dimension].astype(np.float64),
             pressure=arrays["pressure"].reshape(nodes).astype(np.float64),
             **{
@@ -147,6 +145,20 @@ def read_vtu(path: Path) -> Fields:
             },
             cell_errors=arrays["cell_errors"].astype(np.float64) if "cell_errors" in arrays else None,
         )
+
+
+def read_insides(path: Path) -> InsideFields:
+    """Read back the scalar inside bodies; raises OutputError where the file is missing or is not of that kind."""
+    with _reading(path):
+        points, cells, arrays = _grid(path)
+        return InsideFields(points, cells, arrays["scalar"].astype(np.float64), arrays["body"].astype(np.int64))
+
+
+def _grid(path: Path) -> tuple[FloatArray, IntArray, dict[str | None, NDArray[Any]]]:
+    """Points (N, d) and quadratic cells (M, 6 | 10) of a VTU file, and all its arrays by name."""
+    arrays = {array.get("Name"): _values(array) for array in ET.parse(path).iter("DataArray")}
+    cells = arrays["connectivity"].reshape(len(arrays["types"]), -1).astype(np.int64)
+    return arrays["points"][:, : _DIMENSIONS[cells.shape[1]]].astype(np.float64), cells, arrays
 
 
 def read_pvd(path: Path, name: str = FLUID) -> tuple[tuple[float, Path], ...]:

@@ -40,6 +40,7 @@ class FluidTable(OpenTable):
     )
     initial: Literal["rest", "steady"] | Formulas = Field(
         default="rest",
-        description="Flow at the start: `rest`, except for what moving bodies set in motion, `steady` past bodies that "
-        "keep their velocities, or expressions of its velocity [length/time]",
+        description="Flow at the start: `rest`, except for what moving bodies set in motion, `steady`, settled around "
+        "bodies that stay in their places, or expressions of its velocity; `steady` is no settled wake of a body that "
+        "moves on, but is one of a body held in a stream [length/time]",
     )

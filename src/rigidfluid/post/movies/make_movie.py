@@ -20,7 +20,7 @@ from rigidfluid.core.output.results_folder import join_folder
 from rigidfluid.core.output.run_files import ADDED, RUN
 from rigidfluid.core.setup.model import Model
 from rigidfluid.errors import OutputError
-from rigidfluid.post.movies.picture import draw_bodies, flow_image, ground, paint_flow
+from rigidfluid.post.movies.picture import draw_bodies, flow_image, ground, inside_image, paint_flow
 from rigidfluid.post.movies.shot import Shot, Window, shot_of
 from rigidfluid.post.movies.small_gif import SmallGifWriter
 from rigidfluid.post.reports.canvas import Canvas, body_shells
@@ -120,8 +120,11 @@ def _frames(results: Results, every: int) -> list[_Frame]:
 def _picture(results: Results, shot: Shot, frame: _Frame, look: Look, scale: Scale | None) -> FloatArray:
     grid = shot.grid(frame.state, look.longer)
     if frame.path is not None and scale is not None:
-        picture = paint_flow(flow_image(results.fields(frame.path), look.show, grid), scale)
-        draw_bodies(picture, grid, results, frame.state)
+        inside = inside_image(results, frame.path, look.show, grid)
+        known = np.isfinite(inside)
+        image = flow_image(results.fields(frame.path), look.show, grid)
+        picture = paint_flow(np.where(known, inside, image), scale)
+        draw_bodies(picture, grid, results, frame.state, known)
         return picture
     picture = ground(results, grid)
     if results.system.dimension == 2:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 from matplotlib.colors import to_rgb
 
-from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.core.model.types import Fields
 from rigidfluid.post.reports.bodies import PlacedBody, seen_bodies
+from rigidfluid.post.reports.insides import inside_section
 from rigidfluid.post.reports.raster import Grid
 from rigidfluid.post.reports.results import Results
 from rigidfluid.post.reports.scale import Quantity, Scale
@@ -25,6 +28,15 @@ def flow_image(fields: Fields, quantity: Quantity, grid: Grid) -> FloatArray:
     """A quantity of the fields at the points of a grid, (rows, columns), nan outside the fluid."""
     section = Section.cut(fields, grid.plane, grid.origin)
     return section.image(section.values(quantity), grid)
+
+
+def inside_image(results: Results, path: Path, quantity: Quantity, grid: Grid) -> FloatArray:
+    """A quantity inside bodies at the points of a grid, (rows, columns), by the ``path`` of the fluid's fields; nan
+    where it is of the fluid alone, and outside bodies that conduct."""
+    section = inside_section(results, path, grid.plane, grid.origin) if quantity == "scalar" else None
+    return (
+        np.full((grid.rows, grid.columns), np.nan) if section is None else section.image(section.values(quantity), grid)
+    )
 
 
 def paint_flow(image: FloatArray, scale: Scale) -> FloatArray:
@@ -45,14 +57,16 @@ def ground(results: Results, grid: Grid) -> FloatArray:
     return np.where(inside[..., None], _NOTHING, hatching(grid.rows, grid.columns))
 
 
-def draw_bodies(picture: FloatArray, grid: Grid, results: Results, state: int) -> None:
-    """Paint the bodies, as the plane cuts them, into a picture (rows, columns, 3)."""
+def draw_bodies(picture: FloatArray, grid: Grid, results: Results, state: int, known: BoolArray | None = None) -> None:
+    """Paint the bodies, as the plane cuts them, into a picture (rows, columns, 3); only their outlines and marks at
+    points whose colours are ``known`` (rows, columns)."""
+    free = np.ones(picture.shape[:2], dtype=bool) if known is None else ~known
     for body in seen_bodies(results, state):
-        _draw(picture, grid, body)
+        _draw(picture, grid, body, free)
 
 
-def _draw(picture: FloatArray, grid: Grid, placed: PlacedBody) -> None:
-    """Paint one body; only points in the square about it are evaluated."""
+def _draw(picture: FloatArray, grid: Grid, placed: PlacedBody, free: BoolArray) -> None:
+    """Paint one body, grey where points are ``free``; only points in the square about it are evaluated."""
     body = placed.shape
     part = grid.about(placed.centre, body.bounding_radius)
     if part is None:
@@ -64,6 +78,6 @@ def _draw(picture: FloatArray, grid: Grid, placed: PlacedBody) -> None:
     off = np.linalg.norm(own[..., 1:], axis=-1)
     hand = inside & (own[..., 0] > 0.0) & (off < _HAND * body.bounding_radius)
     seen = picture[rows, columns]
-    seen[inside] = to_rgb(BODY)
+    seen[inside & free[rows, columns]] = to_rgb(BODY)
     seen[hand] = _MARK
     seen[inside & (distance > -np.linalg.norm(grid.right))] = _EDGE

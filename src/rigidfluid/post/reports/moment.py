@@ -8,6 +8,7 @@ import numpy as np
 
 from rigidfluid.core.geometry.arrays import BoolArray, FloatArray
 from rigidfluid.post.reports.bodies import cuts
+from rigidfluid.post.reports.insides import inside_section
 from rigidfluid.post.reports.results import Results
 from rigidfluid.post.reports.section import Section
 from rigidfluid.post.reports.view_plane import ViewPlane
@@ -20,7 +21,8 @@ MOMENTS = 4
 class Moment:
     """The fields' ``section`` at one output time; the ``centre`` (2,) of the body looked at, to the right and up, the
     ``width`` of the ball around it and its ``gap`` [length]; and ``outlines`` of bodies in the plane, (K, 2) each.
-    ``has_body``: whether that body is there. ``extent``: corners (2,) of what is in the domain."""
+    ``has_body``: whether that body is there. ``extent``: corners (2,) of what is in the domain. ``insides``: section
+    of the scalar inside bodies, if some conduct."""
 
     time: float
     section: Section
@@ -30,6 +32,7 @@ class Moment:
     outlines: tuple[FloatArray, ...] = ()
     has_body: bool = False
     extent: tuple[FloatArray | float, FloatArray | float] = (-np.inf, np.inf)
+    insides: Section | None = None
 
 
 @dataclass(frozen=True)
@@ -72,6 +75,7 @@ def moment(results: Results, output: int, plane: ViewPlane, body: int) -> Moment
         section=Section.cut(results.fields(path), plane, centre),
         centre=plane.flat(centre),
         extent=plane.extent(*results.system.domain.extent),
+        insides=inside_section(results, path, plane, centre),
     )
     if not results.names:
         return whole

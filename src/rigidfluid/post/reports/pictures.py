@@ -14,6 +14,7 @@ from rigidfluid.core.geometry.arrays import FloatArray
 from rigidfluid.post.reports.moment import Moment, View
 from rigidfluid.post.reports.raster import Grid
 from rigidfluid.post.reports.scale import Scale
+from rigidfluid.post.reports.section import Section
 from rigidfluid.post.reports.style import BLACK, BODY, HATCH, OUTSIDE, new_figure
 
 TALLEST, NARROWEST = 8.0, 1.4
@@ -30,10 +31,18 @@ _OUT_OF_PLANE = 45.0  # degrees between velocity and slice from which on a line 
 Over = Callable[[Axes, Moment, View], object]
 """Function that draws over the colours."""
 
+OnBodies = Callable[[Axes, Moment, Scale], object]
+"""Function that draws over the bodies."""
+
 
 def flow_picture(shown: Sequence[Moment], scale: Scale) -> Figure:
     """Speed, pressure or vorticity, of a slice its component to the observer, in the whole domain."""
     return _panels(shown, [View.whole(moment) for moment in shown], scale)
+
+
+def scalar_picture(shown: Sequence[Moment], scale: Scale) -> Figure:
+    """A scalar that the fluid carries along, in bodies that conduct it too."""
+    return _panels(shown, [View.whole(moment) for moment in shown], scale, on_bodies=_draw_insides)
 
 
 def viscosity_picture(shown: Sequence[Moment], scale: Scale, yield_stress: float | None) -> Figure:
@@ -69,20 +78,23 @@ def _mesh_panels(shown: Sequence[Moment], views: Sequence[View], scale: Scale) -
     return figure
 
 
-def _panels(shown: Sequence[Moment], views: Sequence[View], scale: Scale, over: Over | None = None) -> Figure:
+def _panels(
+    shown: Sequence[Moment],
+    views: Sequence[View],
+    scale: Scale,
+    over: Over | None = None,
+    on_bodies: OnBodies | None = None,
+) -> Figure:
     """One panel a moment, bodies grey, what is outside hatched, the same colours for the same value in all."""
     figure, panels = frame(len(shown), views[0], shown[0].section.plane.labels)
     for axes, moment, view in zip(panels, shown, views, strict=True):
-        axes.tripcolor(
-            *moment.section.triangles(moment.section.values(scale.quantity)),
-            shading="gouraud",
-            cmap=scale.map,
-            norm=scale.norm,
-        )
+        _draw_colours(axes, moment.section, scale)
         if over is not None:
             over(axes, moment, view)
         for outline in moment.outlines:
             axes.fill(*outline.T, facecolor=BODY, edgecolor=BLACK, linewidth=0.8)
+        if on_bodies is not None:
+            on_bodies(axes, moment, scale)
         _look_at(axes, view)
         axes.set_title(f"time {moment.time:.4g} [time]")
     scale.draw_bar(figure, panels, 3 if shown[0].section.is_slice else 2)
@@ -117,8 +129,21 @@ def _look_at(axes: Axes, view: View) -> None:
     axes.set_xlim(view.lower[0], view.upper[0])
     axes.set_ylim(view.lower[1], view.upper[1])
     width, height = view.upper - view.lower
-    axes.locator_params(axis="x", nbins=4 if height < 4.0 * width else 1)
+    axes.locator_params(axis="x", nbins=4 if height < 1.5 * width else 2 if height < 4.0 * width else 1)
     axes.locator_params(axis="y", nbins=4 if width < 4.0 * height else 2)
+
+
+def _draw_colours(axes: Axes, section: Section, scale: Scale) -> None:
+    values = section.triangles(section.values(scale.quantity))
+    axes.tripcolor(*values, shading="gouraud", cmap=scale.map, norm=scale.norm)
+
+
+def _draw_insides(axes: Axes, moment: Moment, scale: Scale) -> None:
+    """The scalar inside bodies that conduct, below the outlines."""
+    if moment.insides is None:
+        return
+    _draw_colours(axes, moment.insides, scale)
+    axes.add_collection(LineCollection(list(moment.outlines), colors=BLACK, linewidths=0.8), autolim=False)
 
 
 def _draw_mesh(axes: Axes, moment: Moment, view: View) -> None:

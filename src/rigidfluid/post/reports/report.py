@@ -37,12 +37,14 @@ from rigidfluid.post.reports.pictures import (
     flow_picture,
     gap_picture,
     mesh_picture,
+    scalar_picture,
     streamline_picture,
     viscosity_picture,
     whole_mesh_picture,
 )
 from rigidfluid.post.reports.results import Results, read_results
 from rigidfluid.post.reports.rotation_plot import rotation_plot, torque_plot, turning
+from rigidfluid.post.reports.scalar_plot import scalar_plot
 from rigidfluid.post.reports.scale import QUANTITIES, Scale
 from rigidfluid.post.reports.shared_scale import shared_scale, shared_scales
 from rigidfluid.post.reports.space import dry_space_picture, flow_space_picture
@@ -112,8 +114,9 @@ def _flow_pictures(results: Results, plane: ViewPlane, body: int | None) -> Iter
     yield "vorticity", caption, flow_picture(shown, turns), raster
     yield "pressure", f"Dynamic pressure.{where}", flow_picture(shown, pressure), raster
     if shown[-1].section.fields.scalar is not None:
-        caption = f"The scalar that the fluid carries along.{where}"
-        yield "scalar", caption, flow_picture(shown, shared_scale(results, "scalar", plane, body)), raster
+        too = " Bodies that conduct it have its colours inside." if any(one.insides for one in shown) else ""
+        caption = f"The scalar that the fluid carries along.{too}{where}"
+        yield "scalar", caption, scalar_picture(shown, shared_scale(results, "scalar", plane, body)), raster
     if shown[-1].section.fields.viscosity is not None:
         stress = _yield_stress(results)
         line = "" if stress is None else " Inside of the white line the stress is below the yield stress."
@@ -173,6 +176,9 @@ def _pictures(results: Results, plane: ViewPlane, body: int | None) -> Iterator[
         yield "space", "The bodies, and the paths of a few.", dry_space_picture(results, times, plane), ("png",)
     if results.names:
         yield from _body_plots(results, plane)
+    if results.model.fluid.scalar is not None and len(results.time) > 1:
+        caption = "The scalar: means in bodies, fluxes into the fluid, and the extremes."
+        yield "scalar_over_time", caption, scalar_plot(results), both
     yield "energy", "Energy supplied, and where it is.", energy_plot(results), both
     if results.model.time.tolerance is not None:
         yield "step", "How long the steps are.", step_plot(results), both

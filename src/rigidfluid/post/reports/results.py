@@ -20,7 +20,7 @@ from rigidfluid.core.output.results_folder import is_being_written
 from rigidfluid.core.output.run_document import read_changes, read_document
 from rigidfluid.core.output.run_files import RUN
 from rigidfluid.core.output.tables import table_path
-from rigidfluid.core.output.vtu import read_pvd, read_vtu
+from rigidfluid.core.output.vtu import INSIDES, read_insides, read_pvd, read_vtu
 from rigidfluid.core.output.writer import SERIES, SUMMARY
 from rigidfluid.core.setup.assemble import assemble
 from rigidfluid.core.setup.description import refuse_description
@@ -114,6 +114,18 @@ class Results:
     def fields(self, path: Path) -> Fields:
         """Fields in a file, along periods of all cells in the domain, in which the mesh itself need not be."""
         return continued(read_vtu(path), self.system.lattice)
+
+    def insides(self, path: Path) -> Fields | None:
+        """Scalar inside bodies that conduct, at the time of a file of fields, continued like these; velocity and
+        pressure are not numbers there. None where no body conducts."""
+        beside = path.with_suffix(f".{INSIDES}.vtu")
+        if not beside.exists():
+            return None
+        inside = read_insides(beside)
+        velocity = np.full_like(inside.points, np.nan)
+        return continued(
+            Fields(inside.points, inside.cells, velocity, velocity[:, 0], inside.scalar), self.system.lattice
+        )
 
     def path(self, body: int) -> FloatArray:
         """Positions of a body by number (s, d), along periods those of its image in the domain; its first before it

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from rigidfluid.core.geometry.arrays import FloatArray
+from rigidfluid.post.reports.insides import inside_section
 from rigidfluid.post.reports.results import Results
 from rigidfluid.post.reports.scale import Quantity, Scale
 from rigidfluid.post.reports.section import Section
@@ -33,8 +34,11 @@ def shared_scales(
     for time, path in (there[i] for i in chosen):
         through = results.path(follow or 0)[results.state_at(time)]
         section = Section.cut(results.fields(path), plane, through)
+        insides = inside_section(results, path, plane, through)
         for quantity, spreads in zip(quantities, found, strict=True):
             spreads.append(section.spread(quantity))
+            if quantity == "scalar" and insides is not None:
+                spreads.append(insides.spread(quantity))
     return [
         Scale.fit(quantity, *zip(*spreads, strict=True)) for quantity, spreads in zip(quantities, found, strict=True)
     ]

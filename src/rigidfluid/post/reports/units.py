@@ -19,6 +19,9 @@ _POWERS = {
     "energy": (1, 2, -2),
 }
 """Powers of mass, length and time in what labels speak of."""
+_KEPT = "rad", "scalar"
+"""Units that have no other names."""
+
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -61,11 +64,11 @@ class Units:
         above, *below = found[1].split("/")
         factors = [(word, 1) for word in above.split("·") if word != "1"]
         factors += [(word, -1) for part in below for word in part.split("·")]
-        if any(word not in {*_POWERS, "rad"} for word, _ in factors):
+        if any(word not in {*_POWERS, *_KEPT} for word, _ in factors):
             return found[0]
-        powers = dict.fromkeys(("rad", *_BASE), 0)
+        powers = dict.fromkeys((*_KEPT, *_BASE), 0)
         for word, sign in factors:
-            for base, power in {"rad": 1}.items() if word == "rad" else self._powers(word).items():
+            for base, power in {word: 1}.items() if word in _KEPT else self._powers(word).items():
                 powers[base] += sign * power
         return f"[{self._product(powers)}]"
 
@@ -76,7 +79,7 @@ class Units:
         return powers
 
     def _product(self, powers: Mapping[str, int]) -> str:
-        names = {"rad": "rad"} | dict(self.names or {})
+        names = {word: word for word in _KEPT} | dict(self.names or {})
         above = [names[base] + _raised(power) for base, power in powers.items() if power > 0]
         below = [names[base] + _raised(-power) for base, power in powers.items() if power < 0]
         over = f"({'·'.join(below)})" if len(below) > 1 else "".join(below)

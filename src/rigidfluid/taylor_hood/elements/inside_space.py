@@ -28,6 +28,10 @@ _BESIDE, _BESIDE_STRAIGHT = -2e-3, -0.3
 """Least coordinate in a cell, and in a straight one, of a point that counts as beside it: points on the body are a
 little outside of all cells, and to look for others takes most of a step in 3D."""
 
+_INSIDE = 1e-3
+"""Distance from the nearest place inside, over the body's radius, up to which a point counts as inside: cells may
+differ by so much from a curved surface, where body and fluid have one value."""
+
 
 class InsideSpace:
     """Elements on the cells of an ``inside``: their ``numbering``, ``geometry`` (vertices + K, d) and ``node_points``
@@ -51,6 +55,15 @@ class InsideSpace:
         rows = np.repeat(np.arange(len(points)), columns.shape[1])
         entries = quadratic_basis(coordinates).ravel(), (rows, columns.ravel())
         return sparse.csr_array(entries, shape=(len(points), self.nodes))
+
+    def held(self, points: FloatArray) -> tuple[IntArray, sparse.csr_array]:
+        """Numbers (K,) of the ``points`` (N, d) that are inside, and the functions' values there, (K, nodes)."""
+        reach = float(np.linalg.norm(self.node_points, axis=1).max())
+        near = np.flatnonzero(np.linalg.norm(points, axis=1) <= reach)
+        basis = self.basis(points[near])
+        missed = np.linalg.norm(basis @ self.node_points - points[near], axis=1)
+        inside = missed <= _INSIDE * reach
+        return near[inside], basis[inside]
 
 
 def traces(

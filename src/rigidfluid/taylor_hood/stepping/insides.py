@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +11,8 @@ from scipy import sparse
 from rigidfluid.core.fluid.conduction import Conduction, Inside
 from rigidfluid.core.fluid.scalar import ScalarProblem
 from rigidfluid.core.geometry.arrays import FloatArray
-from rigidfluid.core.mechanics.frames import to_world
+from rigidfluid.core.geometry.lattice import Lattice
+from rigidfluid.core.mechanics.frames import to_body_frame, to_world
 from rigidfluid.core.model.types import InsideFields, Pose
 from rigidfluid.taylor_hood.elements.inside_space import InsideSpace
 from rigidfluid.taylor_hood.elements.numbering import Numbering
@@ -61,15 +62,31 @@ class Insides:
             body=np.repeat(list(self.spaces), counts),
         )
 
+    def sampled(self, values: FloatArray, pose: Pose, points: FloatArray, lattice: Lattice) -> FloatArray:
+        """The ``values`` (nodes,) at ``points`` (N, d), (N,), not numbers outside of the bodies that conduct and of
+        their images by a ``lattice``."""
+        found = np.full(len(points), np.nan)
+        for (body, space), mine in zip(self.spaces.items(), self._nodes_of_bodies(), strict=True):
+            centre = pose.position[body]
+            own = to_body_frame(pose, body, centre + lattice.shortened(points - centre))
+            inside, basis = space.held(own)
+            found[inside] = basis @ values[mine]
+        return found
+
     def means(self, on_surfaces: FloatArray, values: FloatArray) -> FloatArray:
         """Mean of ``values`` (nodes,) in each body that conducts, and that ``on_surfaces`` (surfaces,) of all else."""
-        found, first, content = on_surfaces.copy(), 0, self.capacity @ values
+        found, content = on_surfaces.copy(), self.capacity @ values
         weight = self.capacity @ np.ones(self.nodes)
-        for body, space in self.spaces.items():
-            mine = slice(first, first + space.nodes)
+        for body, mine in zip(self.spaces, self._nodes_of_bodies(), strict=True):
             found[body] = content[mine].sum() / weight[mine].sum()
-            first += space.nodes
         return found
+
+    def _nodes_of_bodies(self) -> Iterator[slice]:
+        """Nodes inside each body, in order."""
+        first = 0
+        for space in self.spaces.values():
+            yield slice(first, first + space.nodes)
+            first += space.nodes
 
 
 @dataclass(frozen=True, eq=False)

@@ -110,6 +110,51 @@ def test_what_is_inside_is_a_block_of_the_fields_that_turns_with_the_disk(tmp_pa
         assert mean == pytest.approx(fluxes["inside"][now][0] if time > 0.0 else 1.0, rel=1e-5)
 
 
+def test_probes_read_the_inside_of_the_disk_that_is_over_them_and_the_fluid_elsewhere() -> None:
+    """At the start 1 + 4 (x - .5) inside; later what a disk of all but one value has everywhere."""
+    probes = [[0.45, 1.45], [0.58, 1.36], [0.5, 1.4], [0.5, 0.3], [0.8, 1.4]]
+    short = {"time": {"end": 0.02, "step": 0.01}, "output": {"every": 0.02, "probes": probes}}
+    seen = rigidfluid.run(scene(**short)).probes["scalar"].reshape(-1, 5)
+    np.testing.assert_allclose(seen[0, :3], [0.8, 1.32, 1.0], rtol=1e-9)
+    np.testing.assert_allclose(seen[0, 3:], [0.05, 0.08], atol=1e-9)
+    mixed = rigidfluid.run(scene({**CONDUCTS, "conductivity": 1e4}, **short))
+    inside = mixed.scalar_fluxes["inside"][mixed.scalar_fluxes["surface"] == "disk"][-1]
+    np.testing.assert_allclose(mixed.probes["scalar"].reshape(-1, 5)[-1, :3], inside, rtol=1e-3)
+
+
+def test_probes_find_the_image_of_a_disk_across_periodic_surfaces_and_its_own_inside_among_several() -> None:
+    seam = [{"on": "left", "type": "periodic"}, {"on": "right", "type": "periodic"}]
+    same = {"capacity": 1.0, "conductivity": 1.0}
+    values = {"on": "disk", "value": "1 + y"}, {"on": "other", "value": "7 + y"}
+    second = {**DISK, "name": "other", "position": [0.5, 0.6], "fixed": True}
+    history = rigidfluid.run(
+        scene(
+            scalar={"diffusivity": 0.02, "initial": "0.1*y", "body": [{**same, **one} for one in values]},
+            body=[{**DISK, "position": [1.05, 1.4], "fixed": True}, second],
+            boundary=seam,
+            time={"end": 0.01, "step": 0.01},
+            output={"every": 0.01, "probes": [[0.02, 1.45], [0.97, 1.35], [0.5, 0.65], [0.5, 1.0]]},
+        )
+    )
+    start = history.probes["scalar"].reshape(-1, 4)[0]
+    np.testing.assert_allclose(start, [2.45, 2.35, 7.65, 0.1], atol=1e-9)
+
+
+def test_a_probe_beside_the_short_axis_of_an_ellipse_is_in_the_fluid() -> None:
+    """Nearer to its centre than its ends are."""
+    ellipse = {"type": "ellipsoid", "name": "disk", "semi_axes": [0.2, 0.08], "density": 1.2, "position": [0.5, 1.4]}
+    seen = rigidfluid.run(
+        scene(
+            {**CONDUCTS, "value": 5.0},
+            body=[{**ellipse, "fixed": True}],
+            time={"end": 0.01, "step": 0.01},
+            output={"every": 0.01, "probes": [[0.5, 1.53], [0.6, 1.4]]},
+        )
+    ).probes["scalar"]
+    assert seen[0] < 4.0
+    assert seen[1] == pytest.approx(5.0, rel=1e-9)
+
+
 def in_periodic_channel(start: float) -> Any:
     """Results of a disk from x = ``start`` on, which a drop of pressure takes along through a few periods."""
     x = f"2*pi*(x - {start})"

@@ -30,6 +30,7 @@ QUANTITIES = {
     "force": ("g/s²", "g·cm/s²"),
     "force·length": ("g·cm/s²", "g·cm²/s²"),
     "energy": ("g·cm/s²", "g·cm²/s²"),
+    "scalar·area/time": ("scalar·cm²/s", "scalar·cm²/s"),
 }
 """Units of quantities in 2D, per depth, and in 3D: dyn/cm and dyn, erg/cm and erg."""
 
