@@ -59,9 +59,10 @@ def counted(told: str) -> int:
 
 
 def instructions(checkout: Path, scene: str, steps: int) -> int:
-    """Number of instructions of a run of so many steps, whose loops a run before has compiled."""
-    own = {"PYTHONPATH": str(checkout / "src"), "PYTHONHASHSEED": "0"}
-    own["NUMBA_CACHE_DIR"] = str(checkout / "out" / "numba_for_valgrind")
+    """Number of instructions of a run of so many steps, whose modules and loops a run before has compiled."""
+    cache = str(checkout / "out" / "valgrind_cache")
+    own = {"PYTHONPATH": str(checkout / "src"), "PYTHONHASHSEED": "0", "NUMBA_CACHE_DIR": cache}
+    own |= {"PYTHONPYCACHEPREFIX": cache, "PYTHONDONTWRITEBYTECODE": ""}
     command = [sys.executable, "-c", STEPS, str(checkout / "scenes" / f"{scene}.toml"), str(steps)]
     _said(command, checkout, own)
     return counted(_said([*COUNTER, *command], checkout, own))
