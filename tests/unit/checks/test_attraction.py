@@ -42,7 +42,7 @@ def least_gap(case: rigidfluid.Scene) -> float:
     return float(rigidfluid.run(case).bodies["gap"].min())
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", [2, pytest.param(3, marks=pytest.mark.long)])
 @pytest.mark.parametrize("epsilon", [1e-3, 3e-3])
 def test_a_law_that_is_strong_enough_is_a_note_and_keeps_them_apart(dimension: int, epsilon: float) -> None:
     case = scene(dimension, normal(epsilon))
@@ -57,7 +57,7 @@ def test_a_law_that_is_strong_enough_is_a_note_and_keeps_them_apart(dimension: i
     assert 0.0 < least_gap(case) < gap
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", [2, pytest.param(3, marks=pytest.mark.long)])
 @pytest.mark.parametrize(("epsilon", "of"), [(1e-2, "work"), (1e-1, "pull")])
 def test_a_law_that_is_too_weak_is_a_warning_and_lets_them_overlap(dimension: int, epsilon: float, of: str) -> None:
     case = scene(dimension, normal(epsilon))
