@@ -22,7 +22,7 @@ from rigidfluid.core.model.contacts import in_order, select
 from rigidfluid.core.model.detector import Detector
 from rigidfluid.core.model.part import PartOptions
 from rigidfluid.core.model.types import Contacts, Mesh, Pose
-from rigidfluid.detectors.ellipsoid_on_facets import PlacedEllipsoid, ellipsoid_touches
+from rigidfluid.detectors.ellipsoid_on_facets import PlacedEllipsoids, ellipsoid_touches
 from rigidfluid.detectors.placed_facets import PlacedFacets, Places, Solid, passing_edges, shallowest_piercing
 from rigidfluid.detectors.probes import Pairs, Placement, Probed, Probes
 from rigidfluid.detectors.round_pieces import is_whole
@@ -65,12 +65,16 @@ class FacetDetector(Detector):
         self.signed = sum(solid is not None for solid in self._solids) > 1 and any(
             body.dimension == 3 for body in bodies
         )
+        self._different_solids = list({id(solid): solid for solid in self._solids if solid is not None}.values())
+        number = {id(solid): row for row, solid in enumerate(self._different_solids)}
+        self._solid_numbers = np.array([number.get(id(solid), -1) for solid in self._solids], dtype=np.int64)
         self._faceted = np.array([solid is not None for solid in self._solids], dtype=bool)
         smooth = [index for index, body in enumerate(bodies) if body.semi_axes is not None]
         self._smooth = np.array(smooth, dtype=np.int64)
         self._smooth_contacts = SmoothContacts([bodies[index] for index in smooth], [])
         long = [index for index in smooth if bodies[index].radius is None]
         self._long = np.array(long, dtype=np.int64)
+        self._semi_axes = np.array([_semi_axes(body) for body in bodies])
         self._is_long = np.isin(np.arange(len(self._solids)), self._long)
         closed = [wall for wall in walls if not isinstance(wall.shape, FacetSurface)]
         self._long_contacts = SmoothContacts([bodies[index] for index in long], closed)
@@ -121,8 +125,7 @@ class FacetDetector(Detector):
     def _further_touches(self, pairs: Pairs, placed: Placement, reach: float, found: Touches) -> Iterator[Touches]:
         """Places besides those of points: on ellipsoids, and of two surfaces of facets between edges that pass each
         other, or, where no corner is inside, that go through facets."""
-        for row in np.flatnonzero(self._is_long[pairs.a] | self._is_long[pairs.b]).tolist():
-            yield _touches(row, self._ellipsoid_places(int(pairs.a[row]), int(pairs.b[row]), placed, reach))
+        yield from self._ellipsoid_touches(pairs, placed, reach)
         pair = np.flatnonzero(self._faceted[pairs.a] & self._faceted[pairs.b])
         if len(pair) == 0:
             return
@@ -152,17 +155,23 @@ class FacetDetector(Detector):
         assert solid is not None
         return PlacedFacets(solid, placed.position[number], placed.rotation[number])
 
-    def _ellipsoid_places(self, a: int, b: int, placed: Placement, reach: float) -> Places:
-        """Contacts of an ellipsoid, a or b, with the other surface, which is of facets."""
-        body, other = (b, a) if self._faceted[a] else (a, b)
-        facets, rotation = self._facets(other, placed), placed.rotation[body]
-        local = facets.local(placed.position[body])
-        turned = PlacedEllipsoid(self.bodies[body], local, facets.rotation.T @ rotation)
-        near = ellipsoid_touches(turned, facets.solid.surface, facets.solid.features, reach)
-        foot, normal = facets.lab(near.foot), near.normal @ facets.rotation.T
-        point = foot + near.distance[:, None] * normal
-        found = Places(point, foot, normal, near.distance, np.ones(len(foot)))
-        return found if body == a else found._replace(point_a=foot, point_b=point, normal=-normal)
+    def _ellipsoid_touches(self, pairs: Pairs, placed: Placement, reach: float) -> Iterator[Touches]:
+        """Contacts of ellipsoids with surfaces of facets, those of all pairs with one surface at once."""
+        rows = np.flatnonzero(self._is_long[pairs.a] | self._is_long[pairs.b])
+        faceted = self._faceted[pairs.a[rows]]
+        body = np.where(faceted, pairs.b[rows], pairs.a[rows])
+        other = np.where(faceted, pairs.a[rows], pairs.b[rows])
+        for number in np.unique(self._solid_numbers[other]).tolist():
+            mine = np.flatnonzero(self._solid_numbers[other] == number)
+            there = other[mine]
+            turned = np.einsum("nki,nkj->nij", placed.rotation[there], placed.rotation[body[mine]])
+            local = placed.local(there, placed.position[body[mine]])
+            bodies = PlacedEllipsoids(self._semi_axes[body[mine]], local, turned)
+            near = ellipsoid_touches(bodies, self._different_solids[number], reach)
+            there, row = there[near.point], rows[mine][near.point]
+            foot, normal = placed.lab(there, near.foot), placed.turned(there, near.normal)
+            point, sign = foot + near.distance[:, None] * normal, np.ones(len(row))
+            yield Touches(row, point, foot, normal, near.distance, sign).turned(faceted[mine][near.point])
 
     def _smooth_pair_contacts(self, pose: Pose, reach: float) -> list[Contacts]:
         """Contacts of balls and ellipsoids with each other, and of the latter with flat and round walls."""
@@ -214,6 +223,11 @@ def _probed(shape: Surface, solid: Solid | None) -> Probed:
 
 def _touches(pair: int, places: Places) -> Touches:
     return Touches(np.full(len(places.gap), pair), *places)
+
+
+def _semi_axes(body: Body) -> FloatArray:
+    """Semi-axes (d,) of a body, NaN without any [length]."""
+    return np.full(body.dimension, np.nan) if body.semi_axes is None else body.semi_axes
 
 
 def _least_gaps(touches: Touches, pairs: int) -> FloatArray:

@@ -11,6 +11,20 @@ from rigidfluid.core.geometry.arrays import BoolArray, FloatArray, IntArray
 from rigidfluid.core.geometry.facet_surface import FacetSurface
 from rigidfluid.detectors.facet_features import Features, features_of
 from rigidfluid.detectors.hollows import hollow_numbers
+from rigidfluid.detectors.in_space import in_space
+
+
+class FacetTriples(NamedTuple):
+    """A surface of facets: ``points`` (N, 3) [length], ``vertices`` (F, d), unit ``normals`` (F, 3) into the fluid, and
+    its `Features` with ``downhill`` (e, 2, 3)."""
+
+    points: FloatArray
+    vertices: IntArray
+    normals: FloatArray
+    corners: IntArray
+    edges: IntArray
+    downhill: FloatArray
+    all_edges: IntArray
 
 
 class Solid:
@@ -23,6 +37,15 @@ class Solid:
     def features(self) -> Features:
         """Its corners and edges."""
         return features_of(self.surface)
+
+    @cached_property
+    def triples(self) -> FacetTriples:
+        """Arrays of the surface and its features, for compiled loops."""
+        facets, own = self.surface.facets, self.features
+        vectors = (in_space(each) for each in (facets.points, self.surface.facet_normals, own.downhill))
+        points, normals, downhill = vectors
+        vertices = np.ascontiguousarray(facets.vertices, dtype=np.int64)
+        return FacetTriples(points, vertices, normals, own.corners, own.edges, downhill, own.all_edges)
 
     @cached_property
     def hollows(self) -> IntArray:

@@ -16,6 +16,7 @@ from rigidfluid.core.model.body import Body
 from rigidfluid.core.model.contacts import select
 from rigidfluid.core.model.types import Contacts, Pose
 from rigidfluid.detectors.ellipsoid_in_hollow import farthest_points
+from rigidfluid.detectors.in_space import in_space
 from rigidfluid.errors import StepError
 
 _STARTS = 16
@@ -141,9 +142,9 @@ def _normals(
         return np.empty((0, dimension)), body_a
     from rigidfluid.detectors.ellipsoid_separation import BEYOND, LOST, separate
 
-    offset = _in_space(position[body_a] - position[body_b])
+    offset = in_space(position[body_a] - position[body_b])
     normal, state = np.empty_like(offset), np.empty(len(offset), dtype=np.int64)
-    directions = _in_space(unit_sphere_points(_STARTS, dimension))
+    directions = in_space(unit_sphere_points(_STARTS, dimension))
     separate(offset, body_a, body_b, _solids(half), directions, reach, normal, state)
     lost = np.flatnonzero(state == LOST)
     if len(lost):
@@ -166,11 +167,6 @@ def _farthest(half: FloatArray, normal: FloatArray) -> FloatArray:
     on_ball = np.einsum("mij,mi->mj", half, normal)
     on_ball /= np.linalg.norm(on_ball, axis=1, keepdims=True)
     return np.asarray(np.einsum("mij,mj->mi", half, on_ball))
-
-
-def _in_space(vectors: FloatArray) -> FloatArray:
-    """Vectors (m, d) as triples."""
-    return np.pad(vectors, ((0, 0), (0, 3 - vectors.shape[1])))
 
 
 def _solids(half: FloatArray) -> FloatArray:

@@ -161,7 +161,7 @@ class FluidScheme(ABC):
         """Dynamics of the motions; those outside the model keep their acceleration, and respond with mass and added
         mass."""
         linear, angular = own_inverse_masses(self._system, state)
-        now, rate = state.motions, accelerations(self._system, state)
+        now, rate = state.motions, accelerations(self._system, state, linear, angular)
         known = self._known_load(state, coupling)
         return CoupledDynamics(now.pose, now.twist, rate, linear, angular, coupling, known)
 

@@ -40,8 +40,8 @@ class Nearby(NamedTuple):
     distance: FloatArray
     normal: FloatArray
 
-    def select(self, rows: IntArray) -> Nearby:
-        """Places in these ``rows``."""
+    def select(self, rows: IntArray | BoolArray) -> Nearby:
+        """Places in these ``rows``, or where they are true."""
         return Nearby(self.point[rows], self.facet[rows], self.foot[rows], self.distance[rows], self.normal[rows])
 
 

@@ -61,10 +61,10 @@ def kinematics_now(system: System, state: State) -> Kinematics:
     return system.motions.kinematics_between(state.motions.pose, state.pose, state.motions.twist, state.twist)
 
 
-def accelerations(system: System, state: State) -> FloatArray:
+def accelerations(system: System, state: State, linear: FloatArray, angular: FloatArray) -> FloatArray:
     """Accelerations of the motions (N, d+k) in the latest step, less the share of contacts, plus that of wrenches
-    applied since; at the start those by weight and applied wrenches [length/time² | rad/time²]."""
-    linear, angular = own_inverse_masses(system, state)
+    applied since; at the start those by weight and applied wrenches [length/time² | rad/time²]. ``linear`` and
+    ``angular`` are `own_inverse_masses`."""
     if state.past is None:
         return _acceleration(linear, angular, outer_load(system, state))
     rate = (flat(state.motions.twist) - flat(state.past.twist)) / state.past.step
@@ -77,7 +77,7 @@ def accelerations(system: System, state: State) -> FloatArray:
 def body_accelerations(system: System, state: State, time: float, size: float) -> FloatArray:
     """Accelerations of the bodies (n, d+k) with the motions that carry them, and the mean rate of the relative velocity
     from ``time`` on over ``size`` [length/time² | rad/time²]."""
-    rate, motions = accelerations(system, state), system.motions
+    rate, motions = accelerations(system, state, *own_inverse_masses(system, state)), system.motions
     now, later = (motions.kinematics(state.motions.pose, when) for when in (time, time + size))
     return now.body_rates(rate, state.motions.twist, (later.relative_twist - now.relative_twist) / size)
 
