@@ -98,7 +98,8 @@ water, with contacts that are ten to a thousand times shorter than a step; what 
 * first step: what it created.
 * grad-div: what [stabilisation](../numerics.md#grad-div) took until the end, no part of the others.
 
-Aimed at are at most .5 % created with any step, and at most 30, 15, 7 and 4 % lost with steps of 4, 2, 1 and .5 ms. Above that are: {over}.
+Aimed at are at most .5 % created with any step, and at most 30, 15, 7 and 4 % lost with steps of 4, 2, 1 and .5 ms.
+Above that are: {over}.
 
 A step in which an impact would lose much is shortened, to 1/32 at most, and to 1/256 where contacts have created
 energy. In the squeezed channel both walls push the disk all the time.
