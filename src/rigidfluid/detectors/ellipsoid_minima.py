@@ -14,6 +14,8 @@ from math import copysign, sqrt
 import numpy as np
 from numba import njit
 
+from rigidfluid.detectors.triples import cross, dot, less, plus, times, triple, turned, turned_back, unit
+
 _BISECTIONS = 60
 _MOST_STEPS = 1000
 _EPSILON = float(np.finfo(float).eps)
@@ -42,7 +44,7 @@ def distance_minima(position, rotation, axes, facets, reach, same):
     outwards, away = np.empty((len(facets.points), 3)), np.empty(len(facets.points))
     kept, has_place = found.copy(), np.empty(len(position), np.bool_)
     for row in range(len(position)):
-        body = (_triple(position[row]), rotation[row], axes[row])
+        body = (triple(position[row]), rotation[row], axes[row])
         found.clear()
         _add_inside_facets(found, row, body, facets)
         _add_corners(found, row, body, facets, reach, is_near, slope, outwards, away)
@@ -67,8 +69,8 @@ def _keep_distinct(kept, found, reach, same):
         _, distance, foot, _ = found[place]
         beside = not distance <= reach
         for i in range(first, len(kept)):
-            apart = _less(kept[i][2], foot)
-            beside |= sqrt(_dot(apart, apart)) <= same
+            apart = less(kept[i][2], foot)
+            beside |= sqrt(dot(apart, apart)) <= same
         if not beside:
             kept.append(found[place])
 
@@ -79,17 +81,17 @@ def _add_inside_facets(found, row, body, facets):
     normal."""
     dimension = facets.vertices.shape[1]
     for facet in range(len(facets.vertices)):
-        normal, first = _triple(facets.normals[facet]), _triple(facets.points[facets.vertices[facet, 0]])
-        if not _dot(_less(body[0], first), normal) > 0.0:
+        normal, first = triple(facets.normals[facet]), triple(facets.points[facets.vertices[facet, 0]])
+        if not dot(less(body[0], first), normal) > 0.0:
             continue
-        nearest = _farthest(body, _times(-1.0, normal))
-        height = _dot(_less(nearest, first), normal)
-        foot, inside = _less(nearest, _times(height, normal)), True
+        nearest = _farthest(body, times(-1.0, normal))
+        height = dot(less(nearest, first), normal)
+        foot, inside = less(nearest, times(height, normal)), True
         for i in range(dimension):
-            corner = _triple(facets.points[facets.vertices[facet, i]])
-            edge = _less(_triple(facets.points[facets.vertices[facet, (i + 1) % dimension]]), corner)
-            inwards = _cross(normal, edge) if dimension == 3 else edge
-            inside &= _dot(inwards, _less(foot, corner)) >= _UPHILL * _dot(edge, edge)
+            corner = triple(facets.points[facets.vertices[facet, i]])
+            edge = less(triple(facets.points[facets.vertices[facet, (i + 1) % dimension]]), corner)
+            inwards = cross(normal, edge) if dimension == 3 else edge
+            inside &= dot(inwards, less(foot, corner)) >= _UPHILL * dot(edge, edge)
         if inside:
             found.append((row, height, foot, normal))
 
@@ -101,8 +103,8 @@ def _add_corners(found, row, body, facets, reach, is_near, slope, outwards, away
     any_near = False
     size = max(body[2][0], body[2][1], body[2][2])
     for corner in facets.corners:
-        arm = _less(_triple(facets.points[corner]), body[0])
-        is_near[corner] = sqrt(_dot(arm, arm)) - size <= reach
+        arm = less(triple(facets.points[corner]), body[0])
+        is_near[corner] = sqrt(dot(arm, arm)) - size <= reach
         if is_near[corner]:
             any_near, slope[corner] = True, np.inf
             away[corner], normal = _measured(body, arm)
@@ -114,13 +116,13 @@ def _add_corners(found, row, body, facets, reach, is_near, slope, outwards, away
         for end in range(2):
             start, stop = facets.all_edges[edge, end], facets.all_edges[edge, 1 - end]
             if is_near[start]:
-                along = _less(_triple(facets.points[stop]), _triple(facets.points[start]))
-                rise = _dot(along, _triple(outwards[start])) / sqrt(_dot(along, along))
+                along = less(triple(facets.points[stop]), triple(facets.points[start]))
+                rise = dot(along, triple(outwards[start])) / sqrt(dot(along, along))
                 slope[start] = min(slope[start], rise)
     for corner in facets.corners:
         if is_near[corner] and slope[corner] >= _UPHILL:
-            towards = _times(-1.0, _triple(outwards[corner]))
-            found.append((row, away[corner], _triple(facets.points[corner]), towards))
+            towards = times(-1.0, triple(outwards[corner]))
+            found.append((row, away[corner], triple(facets.points[corner]), towards))
 
 
 @_kernel
@@ -128,33 +130,33 @@ def _add_edges(found, row, body, facets, reach):
     """Add the places inside edges from which the distance falls into neither facet; in the plane there are none."""
     size = max(body[2][0], body[2][1], body[2][2])
     for edge in range(len(facets.edges)):
-        start, end = _triple(facets.points[facets.edges[edge, 0]]), _triple(facets.points[facets.edges[edge, 1]])
-        along = _less(end, start)
-        middle = _less(_plus(start, 0.5, along), body[0])
-        if sqrt(_dot(middle, middle)) - 0.5 * sqrt(_dot(along, along)) - size > reach:
+        start, end = triple(facets.points[facets.edges[edge, 0]]), triple(facets.points[facets.edges[edge, 1]])
+        along = less(end, start)
+        middle = less(plus(start, 0.5, along), body[0])
+        if sqrt(dot(middle, middle)) - 0.5 * sqrt(dot(along, along)) - size > reach:
             continue
         low, high = 0.0, 1.0
         for _ in range(_BISECTIONS):
             at = 0.5 * (low + high)
-            if _dot(_measured(body, _less(_plus(start, at, along), body[0]))[1], along) > 0.0:
+            if dot(_measured(body, less(plus(start, at, along), body[0]))[1], along) > 0.0:
                 high = at
             else:
                 low = at
-        place = _plus(start, 0.5 * (low + high), along)
-        distance, normal = _measured(body, _less(place, body[0]))
+        place = plus(start, 0.5 * (low + high), along)
+        distance, normal = _measured(body, less(place, body[0]))
         lowest = low > 0.0 and high < 1.0
         for side in range(2):
-            lowest &= _dot(_triple(facets.downhill[edge, side]), normal) >= _UPHILL
+            lowest &= dot(triple(facets.downhill[edge, side]), normal) >= _UPHILL
         if lowest:
-            found.append((row, distance, place, _times(-1.0, normal)))
+            found.append((row, distance, place, times(-1.0, normal)))
 
 
 @_kernel
 def _measured(body, arm):
     """Signed distance of the point that is ``arm`` away from the centre, and the outward normal at its nearest point,
     see `ellipsoid_distance`."""
-    turned, axes = body[1], body[2]
-    local = _turned_back(turned, arm)
+    rotation, axes = body[1], body[2]
+    local = turned_back(rotation, arm)
     shortest = 0
     for k in range(1, 3):
         if axes[k] < axes[shortest]:
@@ -165,16 +167,14 @@ def _measured(body, arm):
         _off_its_plane(local[1], axes[1], shortest == 1) * ratios[1],
         _off_its_plane(local[2], axes[2], shortest == 2) * ratios[2],
     )
-    image = _image(numerator, (ratios[0] - 1.0, ratios[1] - 1.0, ratios[2] - 1.0))
-    image = _times(1.0 / sqrt(_dot(image, image)), image)
+    image = unit(_image(numerator, (ratios[0] - 1.0, ratios[1] - 1.0, ratios[2] - 1.0)))
     foot = (
         copysign(axes[0] * image[0], local[0]),
         copysign(axes[1] * image[1], local[1]),
         copysign(axes[2] * image[2], local[2]),
     )
-    normal = (foot[0] / axes[0] ** 2, foot[1] / axes[1] ** 2, foot[2] / axes[2] ** 2)
-    normal = _times(1.0 / sqrt(_dot(normal, normal)), normal)
-    return _dot(_less(local, foot), normal), _turned(turned, normal)
+    normal = unit((foot[0] / axes[0] ** 2, foot[1] / axes[1] ** 2, foot[2] / axes[2] ** 2))
+    return dot(less(local, foot), normal), turned(rotation, normal)
 
 
 @_kernel
@@ -191,7 +191,7 @@ def _image(numerator, shift):
     for _ in range(_MOST_STEPS):
         below = (root + shift[0], root + shift[1], root + shift[2])
         image = (numerator[0] / below[0], numerator[1] / below[1], numerator[2] / below[2])
-        square = _dot(image, image)
+        square = dot(image, image)
         slope = image[0] ** 2 / below[0] + image[1] ** 2 / below[1] + image[2] ** 2 / below[2]
         newton = square * (sqrt(square) - 1.0) / slope
         if not newton > 4.0 * _EPSILON * root:
@@ -203,56 +203,8 @@ def _image(numerator, shift):
 @_kernel
 def _farthest(body, direction):
     """Point of the ellipsoid that is farthest in this direction."""
-    axes, local = body[2], _turned_back(body[1], direction)
+    axes, local = body[2], turned_back(body[1], direction)
     scaled = (axes[0] * local[0], axes[1] * local[1], axes[2] * local[2])
-    share = 1.0 / sqrt(_dot(scaled, scaled))
+    share = 1.0 / sqrt(dot(scaled, scaled))
     there = (axes[0] * scaled[0] * share, axes[1] * scaled[1] * share, axes[2] * scaled[2] * share)
-    return _plus(body[0], 1.0, _turned(body[1], there))
-
-
-@_kernel
-def _turned(r, v):
-    return (
-        r[0, 0] * v[0] + r[0, 1] * v[1] + r[0, 2] * v[2],
-        r[1, 0] * v[0] + r[1, 1] * v[1] + r[1, 2] * v[2],
-        r[2, 0] * v[0] + r[2, 1] * v[1] + r[2, 2] * v[2],
-    )
-
-
-@_kernel
-def _turned_back(r, v):
-    return (
-        r[0, 0] * v[0] + r[1, 0] * v[1] + r[2, 0] * v[2],
-        r[0, 1] * v[0] + r[1, 1] * v[1] + r[2, 1] * v[2],
-        r[0, 2] * v[0] + r[1, 2] * v[1] + r[2, 2] * v[2],
-    )
-
-
-@_kernel
-def _triple(v):
-    return (v[0], v[1], v[2])
-
-
-@_kernel
-def _dot(u, v):
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
-
-
-@_kernel
-def _plus(u, factor, v):
-    return (u[0] + factor * v[0], u[1] + factor * v[1], u[2] + factor * v[2])
-
-
-@_kernel
-def _less(u, v):
-    return (u[0] - v[0], u[1] - v[1], u[2] - v[2])
-
-
-@_kernel
-def _times(factor, u):
-    return (factor * u[0], factor * u[1], factor * u[2])
-
-
-@_kernel
-def _cross(u, v):
-    return (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
+    return plus(body[0], 1.0, turned(body[1], there))

@@ -24,6 +24,8 @@ from math import sqrt
 import numpy as np
 from numba import njit
 
+from rigidfluid.detectors.triples import cross, dot, plus, times, turned_back, unit
+
 FOUND, BEYOND, LOST = 0, 1, 2
 """States of a pair: its normal is found, its gap is beyond reach, or the highest climb came to no rest."""
 
@@ -57,11 +59,11 @@ def separate(offset, first, second, half, directions, reach, normal, state):
 def _widest(c, a, b, directions, reach):
     """The direction of the largest plane gap, that gap, and whether it was found."""
     n, gap, found = (1.0, 0.0, 0.0), -np.inf, False
-    square = _dot(c, c)
+    square = dot(c, c)
     if not square < np.inf:
         return n, gap, False
     if square > 0.0:
-        line = _unit(c)
+        line = unit(c)
         bound = _plane_gap(line, c, a, b)
         if bound > reach:
             return line, bound, True
@@ -71,7 +73,7 @@ def _widest(c, a, b, directions, reach):
     for k in range(len(directions)):
         u = (directions[k, 0], directions[k, 1], directions[k, 2])
         for start in (_normal_at(a, u), _normal_at(b, u)):
-            other, height, rests = _climb(_unit(start), c, a, b, reach)
+            other, height, rests = _climb(unit(start), c, a, b, reach)
             if height > gap:
                 n, gap, found = other, height, rests
     return n, gap, found
@@ -83,22 +85,22 @@ def _climb(n, c, a, b, reach):
 
     It ends early where g is beyond reach.
     """
-    size = sqrt(_dot(c, c)) + _extremes(a)[1] + _extremes(b)[1]
+    size = sqrt(dot(c, c)) + _extremes(a)[1] + _extremes(b)[1]
     for _ in range(_MOST_STEPS):
         gap = _plane_gap(n, c, a, b)
         if gap > reach:
             return n, gap, True
         slope, step = _newton(n, gap, size, c, a, b)
-        length = sqrt(_dot(step, step))
-        if length <= _NEARLY or _dot(slope, slope) <= (_NEARLY * size) ** 2:
-            tried = _unit(_plus(n, 1.0, step))
+        length = sqrt(dot(step, step))
+        if length <= _NEARLY or dot(slope, slope) <= (_NEARLY * size) ** 2:
+            tried = unit(plus(n, 1.0, step))
             height = _plane_gap(tried, c, a, b)
             # where g is flat in some direction the step is arbitrary
             return (tried, height, True) if height >= gap - 4.0 * _EPSILON * size else (n, gap, True)
-        least, rise = gap - 4.0 * _EPSILON * size, 1e-4 * _dot(slope, step)
+        least, rise = gap - 4.0 * _EPSILON * size, 1e-4 * dot(slope, step)
         share = min(1.0, 1.0 / length)
         for _ in range(_MOST_HALVINGS):
-            tried = _unit(_plus(n, share, step))
+            tried = unit(plus(n, share, step))
             if _plane_gap(tried, c, a, b) >= least + share * rise:
                 break
             share *= 0.5
@@ -112,24 +114,24 @@ def _climb(n, c, a, b, reach):
 def _newton(n, gap, size, c, a, b):
     """Slope of g across n, and Newton's step; where g curves upwards the step goes up all the same."""
     t, u = _tangents(n)
-    apart = _plus(_plus(c, -1.0, _farthest(a, n)), -1.0, _farthest(b, n))
-    p, q = _dot(apart, t), _dot(apart, u)
+    apart = plus(plus(c, -1.0, _farthest(a, n)), -1.0, _farthest(b, n))
+    p, q = dot(apart, t), dot(apart, u)
     tt_a, tu_a, uu_a = _radii(a, n, t, u)
     tt_b, tu_b, uu_b = _radii(b, n, t, u)
     x, y = _turned_solve(tt_a + tt_b + gap, tu_a + tu_b, uu_a + uu_b + gap, p, q, _EPSILON * size)
-    return _plus(_times(p, t), q, u), _plus(_times(x, t), y, u)
+    return plus(times(p, t), q, u), plus(times(x, t), y, u)
 
 
 @_kernel
 def _radii(s, n, t, u):
     """Second derivatives of h across n: the radii of curvature of the surface, in the directions t and u."""
-    v = _pull(s, n)
-    height = sqrt(_dot(v, v))
-    w, z = _pull(s, t), _pull(s, u)
+    v = turned_back(s, n)
+    height = sqrt(dot(v, v))
+    w, z = turned_back(s, t), turned_back(s, u)
     # projected before they are multiplied, as the difference of the products would lose all digits on a needle
-    w = _plus(w, -_dot(w, v) / height**2, v)
-    z = _plus(z, -_dot(z, v) / height**2, v)
-    return _dot(w, w) / height, _dot(w, z) / height, _dot(z, z) / height
+    w = plus(w, -dot(w, v) / height**2, v)
+    z = plus(z, -dot(z, v) / height**2, v)
+    return dot(w, w) / height, dot(w, z) / height, dot(z, z) / height
 
 
 @_kernel
@@ -158,12 +160,12 @@ def touching_normal(c, a, b):
     for _ in range(_BISECTIONS):
         share = 0.5 * (low + high)
         y = _solve(_blend(a, b, share), c)
-        v, w = _pull(a, y), _pull(b, y)
-        if (1.0 - share) ** 2 * _dot(v, v) > share**2 * _dot(w, w):
+        v, w = turned_back(a, y), turned_back(b, y)
+        if (1.0 - share) ** 2 * dot(v, v) > share**2 * dot(w, w):
             low = share
         else:
             high = share
-    return _unit(y)
+    return unit(y)
 
 
 @_kernel
@@ -172,7 +174,7 @@ def _normal_at(s, u):
     n = (0.0, 0.0, 0.0)
     for j in range(3):
         column = (s[0, j], s[1, j], s[2, j])
-        n = _plus(n, u[j] / _dot(column, column), column)
+        n = plus(n, u[j] / dot(column, column), column)
     return n
 
 
@@ -195,14 +197,14 @@ def _extremes(s):
 
 @_kernel
 def _plane_gap(n, c, a, b):
-    v, w = _pull(a, n), _pull(b, n)
-    return _dot(n, c) - sqrt(_dot(v, v)) - sqrt(_dot(w, w))
+    v, w = turned_back(a, n), turned_back(b, n)
+    return dot(n, c) - sqrt(dot(v, v)) - sqrt(dot(w, w))
 
 
 @_kernel
 def _farthest(s, n):
     """The point of the surface that is farthest in direction n, from the centre."""
-    v = _unit(_pull(s, n))
+    v = unit(turned_back(s, n))
     return (
         s[0, 0] * v[0] + s[0, 1] * v[1] + s[0, 2] * v[2],
         s[1, 0] * v[0] + s[1, 1] * v[1] + s[1, 2] * v[2],
@@ -248,40 +250,9 @@ def _tangents(n):
     """Two unit vectors across n and each other; the first lies in the plane z = 0 if n does."""
     x, y, z = abs(n[0]), abs(n[1]), abs(n[2])
     if (z <= x and z <= y) or n[2] == 0.0:
-        t = _unit((-n[1], n[0], 0.0))
+        t = unit((-n[1], n[0], 0.0))
     elif y <= x:
-        t = _unit((n[2], 0.0, -n[0]))
+        t = unit((n[2], 0.0, -n[0]))
     else:
-        t = _unit((0.0, -n[2], n[1]))
-    u = (n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0])
-    return t, u
-
-
-@_kernel
-def _pull(s, n):
-    """Sᵀn."""
-    return (
-        s[0, 0] * n[0] + s[1, 0] * n[1] + s[2, 0] * n[2],
-        s[0, 1] * n[0] + s[1, 1] * n[1] + s[2, 1] * n[2],
-        s[0, 2] * n[0] + s[1, 2] * n[1] + s[2, 2] * n[2],
-    )
-
-
-@_kernel
-def _dot(u, v):
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
-
-
-@_kernel
-def _plus(u, factor, v):
-    return (u[0] + factor * v[0], u[1] + factor * v[1], u[2] + factor * v[2])
-
-
-@_kernel
-def _times(factor, u):
-    return (factor * u[0], factor * u[1], factor * u[2])
-
-
-@_kernel
-def _unit(u):
-    return _times(1.0 / sqrt(_dot(u, u)), u)
+        t = unit((0.0, -n[2], n[1]))
+    return t, cross(n, t)
