@@ -45,6 +45,6 @@ class ExpressionMaterial(GeneralisedNewtonian):
         if len(wrong):
             value, rate = found[wrong[0]], shear_rate[wrong[0]]
             told = f"{value:.3g} at a shear rate of {rate:.3g} from {self.options.viscosity!r}"
-            remedy = "Shorten time.step; if that does not help, bound it there, as with max(…)."
+            remedy = "Bound it there, as with max(…), or shorten time.step if the step is too long for such rates."
             raise StepRejected("fluid.material.viscosity", told, "a finite number above 0", remedy)
         return found
