@@ -19,8 +19,6 @@ STEEL, GRAVITY = 7.8, 981.0
 ROUGHNESS, DRY, DECAY = 2e-4, 0.97, 35.0
 FALL, ABOVE, WIDE = 10.0, 14.0, 10.0
 """Gap under the sphere at the start, what the box is higher, and half its width [R]."""
-COLUMN, ACROSS = 14.0, 2.0
-"""Height of the column with cells of its own, and half its width [R]."""
 AHEAD, BEHIND = 12.0, 20.0
 """How far a window that comes down with the sphere reaches from its centre [R]."""
 CELLS, GROWTH, STEP = 0.4, 0.2, 12.0
@@ -35,8 +33,7 @@ class Case:
     """A measured fall: ``diameter`` [cm], ``density`` and ``viscosity`` of the oil [g, cm, s], Reynolds number of the
     measured speed before the impact, the time after which the run ends [s], what the speed at the start is ``over``
     that for a steady drag [1], the gap from which it ``fall``s [R], ``cells`` at the sphere [R], and their ``growth``
-    with the distance to it [1], and those of the ``column`` above the floor in which the wake comes down, where it has
-    its own [R]. One that has ``settled`` starts at the measured speed itself, in a window that comes
+    with the distance to it [1]. One that has ``settled`` starts at the measured speed itself, in a window that comes
     down with it."""
 
     diameter: float
@@ -48,7 +45,6 @@ class Case:
     fall: float = FALL
     cells: float = CELLS
     growth: float = GROWTH
-    column: float | None = None
     settled: bool = False
 
     @property
@@ -105,7 +101,6 @@ WAYS = {
     "st152": CASES[152],
     "st152_near": replace(CASES[152], cells=0.2, growth=0.25, end=0.0715),
     "st152_far": replace(CASES[152], fall=20.0, end=0.095),
-    "st152_far_near": replace(CASES[152], fall=20.0, end=0.09, cells=0.2, column=0.6),
     "st152_settled": replace(CASES[152], fall=40.0, end=0.148, settled=True),
 }
 """Ways to that at St 152, by their rows."""
@@ -155,11 +150,6 @@ def scene(case: Case) -> Scene:
     if case.settled:
         ends = {"ahead": round(AHEAD * radius, 6), "behind": round(BEHIND * radius, 6)}
         domain["window"] = {"follow": "sphere", "direction": "-y", **ends}
-    mesh = {"size": round(5.0 * radius, 6), "size_body": round(case.cells * radius, 6), "growth": case.growth}
-    if case.column is not None:
-        across, top = round(ACROSS * radius, 6), round(COLUMN * radius, 6)
-        column = {"lower": [-across, 0.0, -across], "upper": [across, top, across]}
-        mesh["refine"] = [column | {"size": round(case.column * radius, 6)}]
     return rigidfluid.scene_from_dict(
         {
             "scene": {
@@ -187,7 +177,7 @@ def scene(case: Case) -> Scene:
                 "restitution": DRY,
                 "roughness": ROUGHNESS,
             },
-            "mesh": mesh,
+            "mesh": {"size": round(5.0 * radius, 6), "size_body": round(case.cells * radius, 6), "growth": case.growth},
             "time": {"end": case.end, "step": float(f"{radius / (STEP * case.measured_speed):.3g}")},
             "output": {"every": case.end},
         }
