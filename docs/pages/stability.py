@@ -114,7 +114,7 @@ ball has a radius of 0.1 and a density of 1, boxes have a side of 1, and speeds 
   turns by 10 rad in a millisecond: [why energy is lost by that](../numerics.md#flow-that-goes-round-with-a-body), and
   how it falls with the step.
 
-In a fluid at most .5 % may be created, with any step; and at most 30, 15, 7 and 4 % be lost
+In a fluid at most 1 % may be created, with any step; and at most 30, 15, 7 and 4 % be lost
 with steps of 4, 2, 1 and .5 ms. A case that does not do what is demanded of it stays in the table, and says **no**.
 
 ## All cases

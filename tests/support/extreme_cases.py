@@ -275,7 +275,7 @@ def keeps(energy: float) -> tuple[Demand, ...]:
     return (*STEADY, Demand("energy unaccounted for", at_most=energy))
 
 
-CREATED = 0.005
+CREATED = 0.01
 """Of what was put in, with any step."""
 LOST = {0.5e-3: 0.04, 1e-3: 0.07, 2e-3: 0.15}
 """Of what was put in, by step; more with longer ones."""
