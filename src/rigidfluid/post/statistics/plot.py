@@ -66,4 +66,5 @@ def _draw_layers(layers: Axes, speeds: Axes, found: Statistics) -> None:
 def _draw_figures(axes: Axes, found: Statistics) -> None:
     """Single figures as text."""
     axes.axis("off")
-    axes.text(0.0, 0.98, "\n".join(found.lines), va="top", transform=axes.transAxes, fontsize=8.0, linespacing=1.6)
+    text = "\n".join(found.lines)
+    axes.text(0.0, 0.98, text, va="top", transform=axes.transAxes, fontsize=8.0, linespacing=1.6, wrap=True)
