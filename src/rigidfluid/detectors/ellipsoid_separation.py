@@ -24,7 +24,7 @@ from math import sqrt
 import numpy as np
 from numba import njit
 
-from rigidfluid.detectors.triples import cross, dot, plus, times, turned_back, unit
+from rigidfluid.detectors.triples import cross, dot, plus, times, triple, turned, turned_back, unit
 
 FOUND, BEYOND, LOST = 0, 1, 2
 """States of a pair: its normal is found, its gap is beyond reach, or the highest climb came to no rest."""
@@ -49,7 +49,7 @@ def separate(offset, first, second, half, directions, reach, normal, state):
     Pairs with a gap above ``reach`` [length] are given up as soon as that is known.
     """
     for k in range(len(first)):
-        c = (offset[k, 0], offset[k, 1], offset[k, 2])
+        c = triple(offset[k])
         n, gap, found = _widest(c, half[first[k]], half[second[k]], directions, reach)
         normal[k, 0], normal[k, 1], normal[k, 2] = n
         state[k] = LOST if not found else BEYOND if gap > reach else FOUND
@@ -71,7 +71,7 @@ def _widest(c, a, b, directions, reach):
         if found and gap >= -_least_radius(a) - _least_radius(b):
             return n, gap, True
     for k in range(len(directions)):
-        u = (directions[k, 0], directions[k, 1], directions[k, 2])
+        u = triple(directions[k])
         for start in (_normal_at(a, u), _normal_at(b, u)):
             other, height, rests = _climb(unit(start), c, a, b, reach)
             if height > gap:
@@ -204,12 +204,7 @@ def _plane_gap(n, c, a, b):
 @_kernel
 def _farthest(s, n):
     """The point of the surface that is farthest in direction n, from the centre."""
-    v = unit(turned_back(s, n))
-    return (
-        s[0, 0] * v[0] + s[0, 1] * v[1] + s[0, 2] * v[2],
-        s[1, 0] * v[0] + s[1, 1] * v[1] + s[1, 2] * v[2],
-        s[2, 0] * v[0] + s[2, 1] * v[1] + s[2, 2] * v[2],
-    )
+    return turned(s, unit(turned_back(s, n)))
 
 
 @_kernel

@@ -34,9 +34,9 @@ def inside_image(results: Results, path: Path, quantity: Quantity, grid: Grid) -
     """A quantity inside bodies at the points of a grid, (rows, columns), by the ``path`` of the fluid's fields; nan
     where it is of the fluid alone, and outside bodies that conduct."""
     section = inside_section(results, path, grid.plane, grid.origin) if quantity == "scalar" else None
-    return (
-        np.full((grid.rows, grid.columns), np.nan) if section is None else section.image(section.values(quantity), grid)
-    )
+    if section is None:
+        return np.full((grid.rows, grid.columns), np.nan)
+    return section.image(section.values(quantity), grid)
 
 
 def paint_flow(image: FloatArray, scale: Scale) -> FloatArray:

@@ -34,7 +34,7 @@ def shared_scales(
     for time, path in (there[i] for i in chosen):
         through = results.path(follow or 0)[results.state_at(time)]
         section = Section.cut(results.fields(path), plane, through)
-        insides = inside_section(results, path, plane, through)
+        insides = inside_section(results, path, plane, through) if "scalar" in quantities else None
         for quantity, spreads in zip(quantities, found, strict=True):
             spreads.append(section.spread(quantity))
             if quantity == "scalar" and insides is not None:
